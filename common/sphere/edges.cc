@@ -15,7 +15,7 @@ using Levels = std::array<double, 3>;
 constexpr double kLeastContrastDn = 6;
 constexpr double kInsideQuantile = 0.6;
 constexpr double kFullDn = 255;             // Of the sensor.
-constexpr double kLeastOutsideShare = 0.2;  // Of the ring, that is no lamp.
+constexpr double kLeastOutsideShare = 0.2;  // Of the ring: without a lamp.
 
 /// What the fit sees of a quad: its three colours, or of YUYV its luma, three times.
 Levels LevelsAt(const Image& image, const Quads& quads, int x, int y) {

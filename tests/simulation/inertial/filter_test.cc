@@ -7,11 +7,11 @@
 namespace footing::inertial {
 namespace {
 
-constexpr double kGravityMps2 = 9.80665;
+constexpr double kFeltAtRestMps2 = 9.80665;
 
 arms::HandReading Felt(double forwards_mps2) {
   arms::HandReading reading;
-  reading.specific_force_S_mps2 = {forwards_mps2, 0, kGravityMps2};
+  reading.specific_force_S_mps2 = {forwards_mps2, 0, kFeltAtRestMps2};
   return reading;
 }
 

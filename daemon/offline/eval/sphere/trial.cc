@@ -1,6 +1,8 @@
 #include "daemon/offline/eval/sphere/trial.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -77,7 +79,8 @@ void ApplyOptics(const std::string& condition, camera::Scene& scene) {
 
 /// What happens in one frame.
 void ApplyEvents(const std::string& condition, camera::Scene& scene, noise::Random& random) {
-  if (condition == "clutter" || condition == "absent") camera::AddClutter(scene, 40, random);
+  if (condition == "clutter" || condition == "absent" || condition == "lamp")
+    camera::AddClutter(scene, 40, random);
   if (condition == "absent") scene.balls.clear();
   for (std::size_t i = 0; i < scene.balls.size(); ++i) {
     if (condition == "moving") scene.balls[i].v_C_mps = {1.4, 1.4, 0.3};
@@ -96,6 +99,30 @@ camera::Scene MakeScene(const std::string& condition, double depth_m, noise::Ran
   PlaceBalls(scene, depth_m, random);
   ApplyOptics(condition, scene);
   return scene;
+}
+
+/// A ball lies across the edge of the lamp, which is the last of the clutter, or nearly so.
+bool IsAtLamp(const camera::Scene& scene) {
+  constexpr double kNearlyPx = 3;
+  const camera::Shape& lamp = scene.shapes.back();
+  return std::any_of(scene.balls.begin(), scene.balls.end(), [&](const camera::Ball& ball) {
+    const Eigen::Vector2d from = Eigen::Rotation2Dd(-lamp.turn_rad) *
+                                 (camera::Project(scene.lens, ball.p_C_m) - lamp.centre_px);
+    const double beyond_px =
+        (from.cwiseQuotient(lamp.half_px).norm() - 1) * lamp.half_px.minCoeff();
+    return std::abs(beyond_px) < RadiusPx(scene, ball) + kNearlyPx;
+  });
+}
+
+/// The next frame's.
+camera::Scene NextScene(const SphereTrial& trial, int frame, noise::Random& random) {
+  for (;;) {
+    const double depth_m = trial.distance_m > 0 ? trial.distance_m : random.Uniform(0.5, 4);
+    camera::Scene scene = MakeScene(trial.condition, depth_m, random);
+    if (trial.condition == "tracked") Swing(scene, depth_m, frame);
+    ApplyEvents(trial.condition, scene, random);
+    if (trial.condition != "lamp" || IsAtLamp(scene)) return scene;
+  }
 }
 
 frames::Frame FrameOf(const camera::Mosaic& mosaic, bool is_yuyv) {
@@ -196,7 +223,7 @@ double RateBound(int events, int trials) {
 const std::vector<std::string>& SphereConditions() {
   static const std::vector<std::string> kConditions = {
       "nominal", "dim",  "soft",      "saturated",  "moving", "quarter_hidden", "half_hidden",
-      "clutter", "yuyv", "bent_lens", "other_limb", "absent", "tracked"};
+      "clutter", "yuyv", "bent_lens", "other_limb", "absent", "tracked",        "lamp"};
   return kConditions;
 }
 
@@ -232,10 +259,7 @@ Result<ordered_json> RunSphereTrial(const SphereTrial& trial, const frames::Came
   std::vector<double> cost_ms;
   int spheres = 0, extra = 0;
   for (int i = 0; i < trial.frames; ++i) {
-    const double depth_m = trial.distance_m > 0 ? trial.distance_m : random.Uniform(0.5, 4);
-    camera::Scene scene = MakeScene(trial.condition, depth_m, random);
-    if (is_sequence) Swing(scene, depth_m, i);
-    ApplyEvents(trial.condition, scene, random);
+    const camera::Scene scene = NextScene(trial, i, random);
     const auto frame = FrameOf(camera::Render(scene, random), trial.condition == "yuyv");
     writer.Add(i, frame, scene, file);
     if (i > 0 && i % kFramesPerReport == 0 && trial.on_progress)

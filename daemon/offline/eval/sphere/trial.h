@@ -34,8 +34,9 @@ struct SphereTrial {
 double RateBound(int events, int trials);
 
 /// What the lens, the light or the surroundings do: nominal, dim, soft, saturated, moving,
-/// quarter_hidden, half_hidden, clutter, yuyv, bent_lens, other_limb, absent; and tracked, whose
-/// frames follow one another, so that the finder knows where to look.
+/// quarter_hidden, half_hidden, clutter, yuyv, bent_lens, other_limb, absent; lamp: clutter with a
+/// sphere at the lamp's edge; and tracked, whose frames follow one another, so that the finder
+/// knows where to look.
 const std::vector<std::string>& SphereConditions();
 
 /// The camera as a program knows it: lens, noise, and blur and limb calibrated on 24 other frames
