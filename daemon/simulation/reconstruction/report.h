@@ -61,8 +61,9 @@ class MeanMisfit {
 };
 
 /// Factor on reported deviations: errors of a model that does not hold grow faster than what is
-/// left of its terms.
-double Doubt(double misfit);
+/// left of its terms. Of a pose from hands and feet alone, whose momentum is not `trusted`, at
+/// least what those of bodies that crouch or fly need: they show little of either.
+double Doubt(double misfit, bool trusted);
 
 /// Deviations of all joints and of the COM's height by the linearised terms, a few a frame. A
 /// value.

@@ -2,6 +2,7 @@
 
 #include "daemon/simulation/reconstruction/delay.h"
 #include "daemon/simulation/reconstruction/pose_targets.h"
+#include "daemon/simulation/reconstruction/report.h"
 #include "tests/simulation/reconstruction/made_world.h"
 
 namespace footing::reconstruction {
@@ -55,6 +56,13 @@ TEST(PoseTargets, DirectionsOfAnArmStayWhereTheOriginMoves) {
   MoveOrigin({1, 2, 0}, targets);
   EXPECT_EQ(targets.points[0].p_W_m, in_W.points[0].p_W_m - Eigen::Vector3d(1, 2, 0));
   for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(targets.points[i].p_W_m, in_W.points[i].p_W_m);
+}
+
+TEST(Doubt, APoseFromHandsAndFeetAloneIsLessCertainEvenWhereItFits) {
+  EXPECT_EQ(Doubt(0.5, true), 1);
+  EXPECT_GT(Doubt(0.5, false), 1.3);
+  EXPECT_EQ(Doubt(3, true), 4);  // (3 / 1.5)^2
+  EXPECT_EQ(Doubt(3, false), 4);
 }
 
 TEST(Reconstruction, ATruthTakesThePlaceOfTheEstimateInEitherMode) {
