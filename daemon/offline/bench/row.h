@@ -59,7 +59,7 @@ Result<Rows> PoseFrame();
 /// is installed.
 Result<Rows> CascadeTraining();
 
-/// Training on the two spirals, nine seeds, against Cascade2 of FANN: CPU seconds, and the part of
+/// Training on the two spirals, 32 seeds, against Cascade2 of FANN: CPU seconds, and the part of
 /// spirals four times as dense that is wrong. Only where libfann is installed.
 Result<Rows> SpiralsTraining();
 

@@ -74,7 +74,9 @@ Result<ordered_json> Evaluate(Flags flags) {
   }
   const auto run = MakeArmScene(flags.scene, *places);
   if (!run) return run.error();
-  return RunArmTrial(*run, model, networks);
+  std::optional<pose_run::Places> observed;
+  if (flags.loop_minutes == 0) observed = *places;
+  return RunArmTrial(*run, model, networks, observed);
 }
 
 }  // namespace

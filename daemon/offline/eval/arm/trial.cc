@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/body/kinematics.h"
+#include "daemon/offline/eval/arm/arm_bound.h"
 #include "daemon/offline/eval/arm/arm_score.h"
 #include "daemon/simulation/arms/arm_geometry.h"
 #include "daemon/simulation/arms/arm_tracker.h"
@@ -26,11 +27,15 @@ struct NetworkScore {
 class ArmTrial {
  public:
   ArmTrial(const pose_run::ArmRun& run, const std::optional<arms::ArmModel>& model,
-           const std::vector<arm_network::ArmNetwork>& networks)
+           const std::vector<arm_network::ArmNetwork>& networks,
+           const std::optional<pose_run::Places>& observed)
       : run_(run),
         tracker_(model),
         geometry_{arms::ArmGeometry(run.body, 0), arms::ArmGeometry(run.body, 1)},
         at_(run.body.skeleton) {
+    for (const arms::ArmGeometry& geometry : geometry_) {
+      if (observed) bounds_.emplace_back(geometry, *observed, run.rate_hz);
+    }
     for (const arm_network::ArmNetwork& network : networks) networks_.push_back({network});
     if (model) mean_ = arms::Of(model->offset);
     body::ComputeKinematics(run.body.skeleton, run.frames.front().q, at_);
@@ -100,10 +105,14 @@ class ArmTrial {
     const auto kinematic = arm_network::ToDirections(kinematic_pose_[arm], kElbowAxis_U);
     kinematic_.Add(geometry, arm == 1 ? arms::Mirrored(kinematic) : kinematic, truth, hand_m);
     still_.Add(geometry, arm == 1 ? arms::Mirrored(mean_) : mean_, truth, hand_m);
+    ArmMoment moment{
+        .turns_W = {}, .truth = truth, .error = Distance(geometry, estimate.directions, truth)};
     for (std::size_t place = 0; place < arms::kPlaces; ++place) {
+      moment.turns_W[place] = SegmentAt(arm, place) * rest_[arm][place];
       const arms::HandState& state = tracker_.hand(arm, static_cast<arms::Place>(place));
-      if (state.valid) turn_.Add(state.turn_W, SegmentAt(arm, place) * rest_[arm][place]);
+      if (state.valid) turn_.Add(state.turn_W, moment.turns_W[place]);
     }
+    if (!bounds_.empty()) bounds_[arm].Add(moment);
     nees_.Add(estimate, truth);
     finite_ = finite_ && arms::Stacked(estimate.directions).allFinite();
   }
@@ -117,6 +126,7 @@ class ArmTrial {
     json["nees"] = nees_.mean();
     json["nees_quarters"] = nees_.Parts(4);
     json["finite"] = finite_;
+    if (!bounds_.empty()) json["observability"] = ArmBound::Json(bounds_);
     json["baselines"]["mean_arm"] = still_.Json();
     if (tracker_.aligned()) json["baselines"]["kinematic"] = kinematic_.Json();
     for (const NetworkScore& one : networks_) {
@@ -128,6 +138,7 @@ class ArmTrial {
   const pose_run::ArmRun& run_;
   arms::ArmTracker tracker_;
   std::array<arms::ArmGeometry, arms::kArms> geometry_;
+  std::vector<ArmBound> bounds_;  ///< Of each arm, or none.
   std::array<std::array<Eigen::Matrix3d, arms::kPlaces>, arms::kArms> rest_;
   body::Kinematics at_;
   arms::ArmDirections mean_;
@@ -144,8 +155,9 @@ class ArmTrial {
 }  // namespace
 
 ordered_json RunArmTrial(const pose_run::ArmRun& run, const std::optional<arms::ArmModel>& model,
-                         const std::vector<arm_network::ArmNetwork>& networks) {
-  return ArmTrial(run, model, networks).Run();
+                         const std::vector<arm_network::ArmNetwork>& networks,
+                         const std::optional<pose_run::Places>& observed) {
+  return ArmTrial(run, model, networks, observed).Run();
 }
 
 }  // namespace footing::eval

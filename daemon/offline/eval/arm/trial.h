@@ -12,9 +12,11 @@ namespace footing::eval {
 
 /// The arms estimated from the devices of a run against the truth from the T-pose on, beside an arm
 /// that never moves, beside the kinematic prediction alone and beside these networks; the fields of
-/// `footing-eval arm`. Straps on both segments need no model.
+/// `footing-eval arm`. Straps on both segments need no model. `observed`: the devices whose
+/// observability is reported (ArmBound); none where the motion repeats itself.
 nlohmann::ordered_json RunArmTrial(const pose_run::ArmRun& run,
                                    const std::optional<arms::ArmModel>& model,
-                                   const std::vector<arm_network::ArmNetwork>& networks = {});
+                                   const std::vector<arm_network::ArmNetwork>& networks,
+                                   const std::optional<pose_run::Places>& observed);
 
 }  // namespace footing::eval

@@ -24,7 +24,11 @@ class FusedScore {
   nlohmann::ordered_json Json() const;
 
  private:
+  /// Why the knee of one side is off.
+  void AddKnee(const JointPlaces& truth, const JointPlaces& places, std::size_t side);
+
   Spread hips_, knees_, hidden_, arms_, legs_, seen_, seen_arms_;
+  Spread hip_heights_, feet_, turns_, unturned_;  ///< While the person squats.
 };
 
 }  // namespace footing::eval

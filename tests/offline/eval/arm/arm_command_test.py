@@ -79,8 +79,23 @@ class Arm(unittest.TestCase):
         self.assertLess(strapped["hand_position_rms_cm"], 0.85 * report["hand_position_rms_cm"])
         self.assertLess(report["hand_position_rms_cm"], report["baselines"]["kinematic"]["hand_position_rms_cm"])
 
+    def test_what_devices_leave_open_is_measured_where_moments_are_alike(self):
+        fist, straps = (self.report("arm", *JUDGED, "--model", self.arm, "--devices", devices)["observability"]
+                        for devices in ("fist", "upper_arm,forearm"))
+        for open_to in (fist, straps):
+            self.assertGreater(open_to["alike_share"], 0.1)
+        self.assertGreater(fist["least"]["hand_position_rms_cm"], 3)
+        self.assertLess(fist["least"]["hand_position_rms_cm"], 17)
+        self.assertLess(fist["observable_share"], 0.9)
+        self.assertGreater(straps["observable_share"], 0.95)
+        self.assertLess(straps["least"]["hand_position_rms_cm"], 2)
+        self.assertLess(straps["in_observable"]["hand_position_rms_cm"], 6)
+        self.assertLess(straps["in_observable"]["shoulder_error_deg"], 8)
+        self.assertLess(straps["in_observable"]["elbow_error_deg"], 8)
+
     def test_deviations_stay_right_over_minutes(self):
         report = self.report("arm", *JUDGED, "--model", self.arm, "--loop-minutes", 4)
+        self.assertNotIn("observability", report)  # The motion repeats itself.
         quarters = report["nees_quarters"]
         self.assertEqual(len(quarters), 4)
         self.assertLess(max(quarters), 3)  # Of one person who trained.
