@@ -38,6 +38,12 @@ std::array<Eigen::Vector2d, board::kCorners> SensorPlaces(const BoardPlace& boar
   return board::SensorPlaces({board.middle_m.x(), board.middle_m.y(), board.yaw_rad});
 }
 
+bool IsBeside(const BoardPlace& board, const FootForce& foot) {
+  const Eigen::Vector2d p = foot.cop_m - board.middle_m;
+  return std::abs(p.dot(Right(board))) > 0.5 * board::kBalanceBoard.plate_x_m ||
+         std::abs(p.dot(Front(board))) > 0.5 * board::kBalanceBoard.plate_y_m;
+}
+
 BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot, bool limited) {
   const Eigen::Vector2d p = foot.cop_m - board.middle_m;
   const double x = p.dot(Right(board)) / (0.5 * board::kBalanceBoard.sensor_distance_x_m);

@@ -39,6 +39,9 @@ struct BoardLoad {
 /// Not `limited`: cells that pull, too, as if the plate had no edge.
 BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot, bool limited = true);
 
+/// Whether the COP is beyond the board's plate: the foot stands on the floor beside it.
+bool IsBeside(const BoardPlace& board, const FootForce& foot);
+
 /// Errors of a board's cells (Bartlett, Ting & Bingham 2014: absolute within 9.1 N, repeatable
 /// within 4.5 N).
 struct CellErrorConfig {

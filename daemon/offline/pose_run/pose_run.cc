@@ -41,6 +41,13 @@ struct Boards {
     }
   }
 
+  sensors::BoardLoad Load(std::size_t f, const sensors::FootForce& force,
+                          const Settings& settings) const {
+    sensors::BoardLoad load = sensors::LoadBoard(real[f], force, settings.limited);
+    if (settings.floor && sensors::IsBeside(real[f], force)) load.corners_n = {};
+    return load;
+  }
+
   momentum::FootLoads Read(std::size_t f, const sensors::BoardLoad& load, double scale,
                            double step_s) {
     const auto read_n = cells[f].Advance(load.corners_n, step_s);
@@ -117,7 +124,7 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     frame.com_m = body::CentreOfMass(scene.body, at);
     const double scale = time_s < kWeighedS ? 1 + settings.mass_error : 1;
     for (std::size_t f = 0; f < sensors::kFeet; ++f) {
-      const auto load = sensors::LoadBoard(boards.real[f], forces[f], settings.limited);
+      const auto load = boards.Load(f, forces[f], settings);
       frame.inputs.loads.feet[f] = boards.Read(f, load, scale, step_s);
       frame.feet[f] = {forces[f].load_n, forces[f].cop_m,
                        body::Place(body::Ankle(scene.body, static_cast<int>(f)), at),

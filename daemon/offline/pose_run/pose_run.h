@@ -40,6 +40,7 @@ struct Settings {
   double rate_hz = 60;   ///< Of the inputs.
   double loop_s = 0;     ///< Forwards and backwards for this duration; 0: once.
   bool limited = false;  ///< Boards end at their sensors; else as if they had no edge.
+  bool floor = false;    ///< A foot whose COP is beyond its board's plate stands on the floor.
   bool hands = true;
   HandDevice hand_device = HandDevice::kMove;
   /// Of kKinect: the joints of its skeleton, too, with what the body hides of it from the camera.

@@ -72,6 +72,7 @@ void BestEstimator::Begin() {
   horizontal_[0].Start(pose_.cop_m.x(), centre.x());
   horizontal_[1].Start(pose_.cop_m.y(), centre.y());
   vertical_.Start(pose_.mean_loads);
+  load_share_ = {};
   estimate_.angular_momentum_kgm2ps.setZero();
   estimate_.angular_momentum_variance.setZero();
 }
@@ -93,6 +94,9 @@ const Estimate& BestEstimator::Advance(const ContactLoads& loads) {
   }
   WatchFlight(loads, gap, total);
   away_s_ = away ? away_s_ + step_s_ : 0;
+  if (!gap) load_share_.Advance(total / (pose_.mass_kg * kStandardGravityMps2), step_s_);
+  estimate_.load_share = load_share_.share();
+  estimate_.whole_weight = load_share_.whole();
   estimate_.valid = !gap && away_s_ < kAwayS;
   AdvanceCom(loads, gap || away_s_ >= kAwayS);
   if (!gap) AdvanceAngular();
@@ -138,6 +142,7 @@ void BestEstimator::AdvanceFeet(const ContactLoads& loads) {
     foot.p_WF_m = places_[f].position_m();
     foot.variance_m2 = places_[f].variance_m2();
     foot.airborne_s = contact ? 0 : contacts_[f].since_s();
+    foot.at_edge_s = AtEdge(loads.feet[f]) ? foot.at_edge_s + step_s_ : 0;
     PlaceHeelAndToe(subject_.feet[f], foot);
   }
 }
@@ -153,10 +158,12 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
   const Eigen::Vector2d centre = Centre();
   for (int i = 0; i < 2; ++i) {
     HorizontalInput input;
-    input.cop_valid = !gap && both.cop_valid;
+    // Of a body that stands on something else, too, they are a part of the COP.
+    input.cop_valid = !gap && both.cop_valid && estimate_.whole_weight;
     input.cop_m = both.p_WP_m(i);
     // Without a measurement the prior alone goes on: no flight is meant.
-    input.load_n = gap ? pose_.mass_kg * kStandardGravityMps2 : both.total_n;
+    input.load_n =
+        gap || !estimate_.whole_weight ? pose_.mass_kg * kStandardGravityMps2 : both.total_n;
     input.com_height_m = height;
     input.centre_m = centre(i);
     horizontal_[static_cast<std::size_t>(i)].Advance(input);
@@ -175,7 +182,7 @@ const Estimate& BestEstimator::SeePosture(double lateral_W_m, double height_W_m)
 }
 
 void BestEstimator::ReportCom() {
-  estimate_.trusted = vertical_.trusted();
+  estimate_.trusted = vertical_.trusted() && estimate_.whole_weight;
   for (int i = 0; i < 2; ++i) {
     const HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
     const auto position = axis.Position(lag_steps_);

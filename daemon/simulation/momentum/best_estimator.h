@@ -10,6 +10,7 @@
 #include "daemon/simulation/momentum/foot_contact.h"
 #include "daemon/simulation/momentum/foot_place.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
+#include "daemon/simulation/momentum/load_share.h"
 #include "daemon/simulation/momentum/vertical_bank.h"
 
 namespace footing::momentum {
@@ -77,6 +78,7 @@ class BestEstimator {
   std::array<FootContact, kFeet> contacts_;
   std::array<FootPlace, kFeet> places_;
   std::array<Pressure, kFeet> pressures_{};
+  LoadShare load_share_;
   double away_s_ = 0;   // Since the feet had load, or the sources were valid.
   double aloft_s_ = 0;  // Since the feet had any load.
   Estimate estimate_;

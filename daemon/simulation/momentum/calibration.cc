@@ -42,7 +42,8 @@ bool TPoseCalibration::Advance(const ContactLoads& loads, double step_s) {
                                          PressureOf(loads.feet[1], kLeastCopLoadN)};
   bool good = IsFinite(loads) && both.total_n > KilogramsToNewtons(kLeastMassKg);
   for (std::size_t f = 0; f < kFeet; ++f)
-    good = good && loads.feet[f].valid && feet[f].total_n > kLeastFootShare * both.total_n;
+    good = good && loads.feet[f].valid && feet[f].total_n > kLeastFootShare * both.total_n &&
+           !AtEdge(loads.feet[f]);
   if (good && held_s_ > kSettledS) {
     const double mean = total_sum_n_ / frames_;
     good = std::abs(both.total_n - mean) < kWeightBand * mean &&

@@ -20,7 +20,7 @@ struct TPose {
 };
 
 /// Five seconds of standing still. Restarts, and counts it, when the body moves, a foot has too
-/// little load or a source is lost. A plain value.
+/// little load or stands at the edge of its board, or a source is lost. A plain value.
 class TPoseCalibration {
  public:
   static constexpr double kSeconds = 5;

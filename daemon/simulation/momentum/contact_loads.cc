@@ -1,9 +1,15 @@
 #include "daemon/simulation/momentum/contact_loads.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace footing::momentum {
 namespace {
+
+constexpr std::size_t kBoardCells = 4;
+constexpr double kEdgeLoadN = 50;    // With less the COP is too coarse.
+constexpr double kEdgeShare = 0.03;  // Of a foot's load on the cells of the other side.
+constexpr double kCellNoiseN = 3;
 
 struct Sum {
   double total_n = 0;
@@ -37,6 +43,19 @@ Pressure PressureOf(const ContactLoads& loads, double least_n) {
   Sum sum;
   for (const FootLoads& foot : loads.feet) sum.Add(foot);
   return sum.Divide(least_n);
+}
+
+bool AtEdge(const FootLoads& foot) {
+  const Pressure pressure = PressureOf(foot, kEdgeLoadN);
+  if (!foot.valid || foot.count != kBoardCells || !pressure.cop_valid) return false;
+  const double least_n = kEdgeShare * pressure.total_n;
+  for (std::size_t i = 0; i < kBoardCells; ++i) {
+    if (foot.cells[i].load_n < -least_n - kCellNoiseN) return false;
+  }
+  constexpr std::array<std::array<std::size_t, 2>, 4> kSides{{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
+  return std::any_of(kSides.begin(), kSides.end(), [&](const auto& side) {
+    return foot.cells[side[0]].load_n + foot.cells[side[1]].load_n <= least_n;
+  });
 }
 
 bool IsFinite(const ContactLoads& loads) {

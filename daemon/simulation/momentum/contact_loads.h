@@ -45,6 +45,12 @@ Pressure PressureOf(const FootLoads& foot, double least_n);
 /// Of both feet together.
 Pressure PressureOf(const ContactLoads& loads, double least_n);
 
+/// Whether the COP has reached the edge of a board, by its cells in the order of board::Corners:
+/// nearly all load is on the two cells of one side. It cannot be further out: a foot that is
+/// presses the edge all the same. Never where there is little load or cells pull, which are those
+/// of a simulated plate without an edge.
+bool AtEdge(const FootLoads& foot);
+
 /// True when every load and position is finite and no count is over kMaxCells.
 bool IsFinite(const ContactLoads& loads);
 

@@ -38,6 +38,7 @@ struct FootEstimate {
   Eigen::Vector3d p_WToe_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();  ///< Of p_WF.
   double airborne_s = 0;                                  ///< Since the foot left the cells.
+  double at_edge_s = 0;  ///< Since its COP came to the edge of the cells: it may be further out.
 };
 
 /// One frame of either mode. Everything is finite at all times; `valid` says whether it means
@@ -48,8 +49,13 @@ struct Estimate {
   double lag_s = 0;
   bool valid = false;
   /// False while the height by the loads is more than three deviations from what hands and feet
-  /// allow (about half a metre), or is not known to 12 cm. A smaller contradiction goes unseen.
+  /// allow (about half a metre), or is not known to 12 cm, or the loads are not the whole weight. A
+  /// smaller contradiction goes unseen.
   bool trusted = true;
+  /// False while the cells carry less or more than a body that neither falls nor rises for seconds:
+  /// it stands on something else, too, or carries a load (LoadShare).
+  bool whole_weight = true;
+  double load_share = 1;  ///< Of the T-pose's weight, in the mean of the last seconds.
   Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d a_WC_mps2 = Eigen::Vector3d::Zero();

@@ -56,6 +56,7 @@ struct PoseInputStatus {
   bool insoles_idle = false;  ///< They measure, but this mode or lag cannot follow them.
   std::array<bool, momentum::kFeet> feet_measured{};       ///< By the source, now.
   std::array<double, momentum::kFeet> load_n{};            ///< By the source, calibrated or not.
+  std::array<bool, momentum::kFeet> at_edge{};             ///< The COP is at the edge of a board.
   std::array<bool, reconstruction::kHands> hands_valid{};  ///< Their places are measured,
   std::array<bool, reconstruction::kHands> arms_valid{};   ///< or how their arms are held.
   std::array<HandTrouble, reconstruction::kHands> hand_trouble{};

@@ -15,6 +15,7 @@ using text::Fixed;
 
 /// A foot that stepped off is noted after this time: steps and kicks are not.
 constexpr double kAwayS = 0.5;
+constexpr double kAtEdgeS = 0.3;  // The same of one whose load comes to the edge of its board.
 constexpr std::array<const char*, 2> kSides{"left", "right"};
 
 void Add(std::string& note, const std::string& words) {
@@ -50,6 +51,11 @@ std::string Awaited(const PoseFrame& frame) {
       return std::string("put weight on the ") + kSides[side] + " foot";
     }
   }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!frame.input.at_edge[side]) continue;
+    return std::string("the ") + kSides[side] +
+           " foot presses on the edge of its board: put it in the middle of the board";
+  }
   const auto& off = frame.input.hands_off_t_pose;
   if (off[0] || off[1]) {
     const std::string arms = off[0] && off[1] ? "both arms"
@@ -81,6 +87,23 @@ void AddFeet(const PoseFrame& frame, std::string& note) {
                   (FollowsInsoles(frame) ? "the ground for " : "its board for ") +
                   Fixed(feet[side].airborne_s, 1) + " s: its place is a guess");
   }
+}
+
+/// Feet, or a part of the weight, that are not where the boards measure them.
+void AddBesides(const PoseFrame& frame, std::string& note) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    const momentum::FootEstimate& foot = frame.momentum.feet[side];
+    if (!foot.contact || foot.at_edge_s < kAtEdgeS) continue;
+    Add(note, std::string("the ") + kSides[side] +
+                  " foot presses on the edge of its board: what is beyond is not measured");
+  }
+  if (!frame.momentum.valid || frame.momentum.whole_weight) return;
+  const bool less = frame.momentum.load_share < 1;
+  Add(note,
+      std::string(FollowsInsoles(frame) ? "the insoles" : "the boards") + " carry " +
+          Fixed(100 * frame.momentum.load_share, 0) + " % of the weight of the T-pose: " +
+          (less ? "stand on them with both feet, and on nothing else" : "put down what you carry") +
+          ", or take the T-pose again");
 }
 
 /// Which hands have no measurement, and why.
@@ -138,9 +161,10 @@ std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
     return note;
   }
   if (measured) AddFeet(frame, note);
-  if (measured && frame.momentum.valid && !frame.momentum.trusted)
+  if (measured) AddBesides(frame, note);
+  if (measured && frame.momentum.valid && frame.momentum.whole_weight && !frame.momentum.trusted)
     Add(note, "the height by the loads is not certain: it does not count for the pose");
-  else if (measured && frame.momentum.valid && !frame.valid)
+  else if (measured && frame.momentum.valid && frame.momentum.trusted && !frame.valid)
     Add(note, "what is measured fits no pose that the model knows: this one is a guess");
   AddHands(frame, note);
   AddMass(frame, subject, note);

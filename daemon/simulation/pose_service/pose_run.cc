@@ -159,6 +159,7 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
     input.feet_measured[side] = walks ? insoles_.feet[side].valid : sensors_.loads.feet[side].valid;
     input.load_n[side] = walks ? reconstruction::TotalLoadN(insoles_.feet[side])
                                : momentum::PressureOf(sensors_.loads.feet[side], 1).total_n;
+    input.at_edge[side] = !walks && momentum::AtEdge(sensors_.loads.feet[side]);
     input.hands_valid[side] = sensors_.hands[side].valid;
     input.arms_valid[side] = sensors_.arms[side].valid;
   }

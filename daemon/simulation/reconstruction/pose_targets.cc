@@ -139,6 +139,7 @@ void SetMomentumTargets(const SubjectModel& model, const Measurement& then, doub
   targets.com_sd_m =
       (estimate.position_variance_m2.array() + std::pow(options.best.com_sd_m, 2)).sqrt();
   if (!estimate.trusted) targets.com_sd_m.z() = kUnknownSdM;
+  if (!estimate.whole_weight) targets.com_sd_m.setConstant(kUnknownSdM);
   targets.has_angular = options.use_angular_momentum && options.best.angular_sd > 0;
   targets.angular_W = AngularTarget(model, then, mass_kg);
   targets.angular_sd =

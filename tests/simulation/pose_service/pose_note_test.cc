@@ -38,6 +38,29 @@ TEST(PoseNote, SaysThatWhatIsMeasuredFitsNoPose) {
   EXPECT_EQ(PoseNote(frame, kSubject), "");
 }
 
+TEST(PoseNote, SaysThatAPartOfTheWeightIsElsewhere) {
+  PoseFrame frame = Well();
+  frame.valid = frame.momentum.trusted = frame.momentum.whole_weight = false;
+  frame.momentum.valid = true;
+  frame.momentum.load_share = 0.52;
+  EXPECT_EQ(
+      PoseNote(frame, kSubject),
+      "the boards carry 52 % of the weight of the T-pose: stand on them with both feet, and on "
+      "nothing else, or take the T-pose again");
+  frame.momentum.load_share = 1.5;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("put down what you carry"));
+}
+
+TEST(PoseNote, SaysThatAFootPressesOnTheEdgeOfItsBoard) {
+  PoseFrame frame = Well();
+  frame.momentum.feet[1].at_edge_s = 1;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right foot presses on the edge"));
+  frame.t_pose.complete = false;
+  frame.input.at_edge = {true, false};
+  EXPECT_EQ(PoseNote(frame, kSubject),
+            "the left foot presses on the edge of its board: put it in the middle of the board");
+}
+
 TEST(PoseNote, LeadsThroughTheTPose) {
   PoseFrame frame = Well();
   frame.t_pose.complete = false;

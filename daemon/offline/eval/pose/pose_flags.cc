@@ -64,6 +64,8 @@ void AddSensorFlags(CLI::App& command, PoseFlags& flags) {
                   "Relative error of the mass measured in the T-pose; 0.02 is two percent")
       ->check(CLI::Range(-0.2, 0.2));
   command.add_flag("--limited", settings.limited, "End the boards at their sensors");
+  command.add_flag("--floor", settings.floor,
+                   "Put feet that step beyond their board's plate on the floor, with --limited");
 }
 
 /// Models, modes and what is reported.

@@ -80,7 +80,7 @@ class TrialScore {
       nees_ += pose_.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
       ++nees_count_;
     }
-    AddValidity(output.valid);
+    AddValidity(output);
     misfit_.Add(output.misfit);
     finite_ = finite_ && output.q.allFinite();
   }
@@ -96,17 +96,26 @@ class TrialScore {
     json["misfit_p95"] = misfit_.Quantile(0.95);
     json["invalid_frames"] = invalid_;
     json["valid_fraction"] = 1 - static_cast<double>(invalid_) / static_cast<double>(frames_);
+    json["not_valid_for"] = {{"no_loads", no_loads_},
+                             {"weight_elsewhere", weight_elsewhere_},
+                             {"height", height_},
+                             {"misfit", misfit_count_}};
     json["longest_invalid_s"] = static_cast<double>(longest_invalid_) / run_.rate_hz;
     json["finite"] = finite_;
     return json;
   }
 
  private:
-  void AddValidity(bool valid) {
+  void AddValidity(const reconstruction::Output& output) {
     ++frames_;
-    invalid_ += valid ? 0 : 1;
-    invalid_since_ = valid ? 0 : invalid_since_ + 1;
+    invalid_since_ = output.valid ? 0 : invalid_since_ + 1;
     longest_invalid_ = std::max(longest_invalid_, invalid_since_);
+    if (output.valid) return;
+    ++invalid_;
+    ++(!output.momentum.valid          ? no_loads_
+       : !output.momentum.whole_weight ? weight_elsewhere_
+       : !output.momentum.trusted      ? height_
+                                       : misfit_count_);
   }
 
   const pose_run::PoseRun& run_;
@@ -120,6 +129,7 @@ class TrialScore {
   Spread misfit_;
   std::size_t frames_ = 0, invalid_ = 0;
   std::size_t invalid_since_ = 0, longest_invalid_ = 0;  ///< Frames in a row.
+  std::size_t no_loads_ = 0, weight_elsewhere_ = 0, height_ = 0, misfit_count_ = 0;  ///< Causes.
   bool finite_ = true;
 };
 
