@@ -43,6 +43,11 @@ def main(program, writer):
         lines = export.stdout.splitlines()  # A line for each file, not one of JSON.
         assert sum(".csv  rows " in line for line in lines) == 3 and "{" not in export.stdout, export
 
+        export = run("export", repaired, "--format", "xdf", "--out", folder / "xdf", "--json")
+        streams = {one["name"]: one["samples"] for one in json.loads(export.stdout)["streams"]}
+        assert export.returncode == 0 and streams["footingd/motion/1"] == 300, export
+        assert run("export", repaired, "--format", "xdf", "--out", folder / "xdf").returncode == 2
+
         for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bvh, trc, mot, c3d"),
                             (("serve", whole, "--server", "none"), "there are: footingd"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
