@@ -46,7 +46,7 @@ class Samples {
   void Add(double time_s, std::span<const double> numbers);
   void Add(double time_s, std::string_view text);
   std::size_t bytes() const { return content_.size(); }
-  /// Appends the chunk and becomes empty. Nothing where there is no sample.
+  /// Appends the chunk and becomes empty. Without samples it appends nothing.
   void AppendTo(const Stream& stream, std::string& out);
 
  private:

@@ -83,6 +83,12 @@ class Connection:
         envelope = bytes_field(number, body)
         self.socket.sendall(struct.pack("<I", len(envelope)) + envelope)
 
+    def answer(self, ping):
+        """Answers the body of a ping: a client that is silent for 10 s is dropped."""
+        asked, now_ns = message(ping), time.monotonic_ns()
+        self.send(PONG, number_field(1, asked.get(1, 0)) + number_field(2, asked.get(2, 0)) +
+                  number_field(3, now_ns) + number_field(4, now_ns))
+
     def receive(self):
         """(field number, body) of the next envelope."""
         size = struct.unpack("<I", self.read(4))[0]
@@ -133,9 +139,7 @@ def run(address, wanted):
             channels = [bytes_field(1, name) for name in (b"status", b"motion", b"boards")]
             connection.send(SUBSCRIBE, b"".join(channels))
         elif number == PING:
-            ping, now_ns = message(body), time.monotonic_ns()
-            connection.send(PONG, number_field(1, ping.get(1, 0)) + number_field(2, ping.get(2, 0)) +
-                            number_field(3, now_ns) + number_field(4, now_ns))
+            connection.answer(body)
         elif number == REFUSED:
             raise ConnectionError(message(body)[2].decode())
         elif number == GOODBYE:
@@ -150,23 +154,33 @@ def run(address, wanted):
                     break
 
 
-def main():
+def default_address(server):
+    """Of this user's footingd ("sensor") or footing-sim ("simulation")."""
     runtime = os.environ.get("XDG_RUNTIME_DIR")
     folder = f"{runtime}/footing" if runtime else f"/tmp/footing-{os.getuid()}"
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("address", nargs="?", default=f"unix:{folder}/sensor.sock",
-                        help="address of footingd (default %(default)s)")
-    parser.add_argument("--samples", type=int, default=1 << 62,
-                        help="number of rows to print (default: until Ctrl-C)")
-    arguments = parser.parse_args()
+    return f"unix:{folder}/{server}.sock"
+
+
+def exit_code_of(address, work):
+    """Does the work until its end or Ctrl-C; an error is printed."""
     try:
-        run(arguments.address, arguments.samples)
+        work()
     except (OSError, ValueError) as error:
-        print(f"error: {arguments.address}: {error}", file=sys.stderr)
+        print(f"error: {address}: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         pass
     return 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("address", nargs="?", default=default_address("sensor"),
+                        help="address of footingd (default %(default)s)")
+    parser.add_argument("--samples", type=int, default=1 << 62,
+                        help="number of rows to print (default: until Ctrl-C)")
+    arguments = parser.parse_args()
+    return exit_code_of(arguments.address, lambda: run(arguments.address, arguments.samples))
 
 
 if __name__ == "__main__":

@@ -10,14 +10,12 @@ beside it; docs/writing-a-client.md explains it.
 """
 import argparse
 import math
-import os
 import select
 import struct
 import sys
-import time
 
-from client import (GOODBYE, HELLO, PING, PONG, REFUSED, SUBSCRIBE, TICK, WELCOME, Connection,
-                    bytes_field, fields, message, number_field)
+from client import (GOODBYE, HELLO, PING, REFUSED, SUBSCRIBE, TICK, WELCOME, Connection, bytes_field,
+                    default_address, exit_code_of, fields, message, number_field)
 
 COMMAND, RESULT, ROLE_CONTROL = 8, 9, 3  # Of Envelope, and the role that may send commands.
 DIRECT_GAIT, CHARACTERS = 13, 26         # Fields of Command and of Tick.
@@ -56,9 +54,7 @@ class Driver:
         if number == WELCOME:
             self.connection.send(SUBSCRIBE, bytes_field(1, b"characters") + double_field(2, 2.0))
         elif number == PING:
-            ping, now_ns = message(body), time.monotonic_ns()
-            self.connection.send(PONG, number_field(1, ping.get(1, 0)) + number_field(2, ping.get(2, 0)) +
-                                 number_field(3, now_ns) + number_field(4, now_ns))
+            self.connection.answer(body)
         elif number == RESULT:
             result = message(body)
             if not result.get(2, 0):
@@ -97,20 +93,11 @@ def run(address):
 
 
 def main():
-    runtime = os.environ.get("XDG_RUNTIME_DIR")
-    folder = f"{runtime}/footing" if runtime else f"/tmp/footing-{os.getuid()}"
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("address", nargs="?", default=f"unix:{folder}/simulation.sock",
+    parser.add_argument("address", nargs="?", default=default_address("simulation"),
                         help="address of footing-sim (default %(default)s)")
     arguments = parser.parse_args()
-    try:
-        run(arguments.address)
-    except (OSError, ValueError) as error:
-        print(f"error: {arguments.address}: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        pass
-    return 0
+    return exit_code_of(arguments.address, lambda: run(arguments.address))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@
 #include "tests/fuzz/pieces.h"
 
 /// Bytes of a broker: in pieces of any length they come to the same messages as at once, none is
-/// longer than what the client takes, and no more is held than one line or message.
+/// longer than what the client takes, and no more is buffered than one line or message.
 namespace footing::fuzz {
 namespace {
 
