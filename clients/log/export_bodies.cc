@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "clients/log/contents.h"
 #include "clients/log/motion_gatherer.h"
 #include "clients/log/opensim.h"
+#include "clients/log/output_folder.h"
 #include "common/body/kinematics.h"
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
@@ -158,9 +158,7 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
   Walker walker;
   const auto gatherers = walker.Run(file->bytes(), recording);
   if (!gatherers) return gatherers.error();
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return Failure("cannot make the folder " + folder + ": " + error.message());
+  if (const Result<void> made = MakeFolder(folder); !made) return made.error();
   std::vector<ExportedMotion> exported;
   int people = 0;
   for (const MotionGatherer& gatherer : *gatherers) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "clients/log/output_folder.h"
 #include "clients/log/tables.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
@@ -58,9 +58,7 @@ class CsvExporter {
 
  private:
   Result<void> Open(const std::string& folder, bool replace) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) return Failure("cannot make the folder " + folder + ": " + error.message());
+    if (const Result<void> made = MakeFolder(folder); !made) return made.error();
     std::set<std::string> taken;
     for (const auto& [channel, topic] : tables_.topics()) {
       if (!topic.table) continue;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "clients/log/output_folder.h"
 #include "clients/log/tables.h"
 #include "clients/log/xdf.h"
 #include "common/recording/mapped_file.h"
@@ -82,9 +83,7 @@ class XdfExporter {
 
   Result<ExportedXdf> Run(const std::string& folder, const std::string& name, bool replace) {
     if (const Result<void> learned = tables_.Learn(); !learned) return learned.error();
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) return Failure("cannot make the folder " + folder + ": " + error.message());
+    if (const Result<void> made = MakeFolder(folder); !made) return made.error();
     ExportedXdf exported{folder + "/" + name + ".xdf", {}};
     Result<recording::OutputFile> file = recording::OutputFile::Create(exported.path, replace);
     if (!file) return file.error();

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "common/result/result.h"
+
+namespace footing::log_client {
+
+/// Makes the folder of an export, and those above it, where they are not there. Failure says why.
+inline Result<void> MakeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return Failure("cannot make the folder " + folder + ": " + error.message());
+  return {};
+}
+
+}  // namespace footing::log_client
