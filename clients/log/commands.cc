@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "clients/log/export_bids.h"
 #include "clients/log/export_bodies.h"
 #include "clients/log/export_csv.h"
 #include "clients/log/export_xdf.h"
@@ -104,14 +105,34 @@ Result<ordered_json> RunXdf(const std::string& file, const std::string& folder, 
   return out;
 }
 
+Result<ordered_json> RunBids(const std::string& file, const std::string& folder,
+                             const BidsOptions& options) {
+  const auto exported = ExportBids(file, folder, options);
+  if (!exported) return exported.error();
+  ordered_json out{{"file", file},
+                   {"format", "bids"},
+                   {"files", ordered_json::array()},
+                   {"events", exported->events}};
+  for (const ExportedTable& table : exported->tables) {
+    out["files"].push_back({{"path", table.path},
+                            {"tracking_system", table.tracking_system},
+                            {"channels", table.channels},
+                            {"samples", table.samples}});
+  }
+  return out;
+}
+
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
-                               const std::string& folder, bool replace) {
+                               const std::string& folder, const BidsOptions& of_bids) {
+  const bool replace = of_bids.replace;
   if (const auto body = BodyFormatOf(format)) {
     return RunBodies(file, format, *body, folder, replace);
   }
   if (format == "xdf") return RunXdf(file, folder, replace);
+  if (format == "bids") return RunBids(file, folder, of_bids);
   if (format != "csv") {
-    return UsageError("unknown --format " + format + "; there are: csv, xdf, bvh, trc, mot, c3d");
+    return UsageError("unknown --format " + format +
+                      "; there are: csv, xdf, bids, bvh, trc, mot, c3d");
   }
   const auto files = ExportCsv(file, folder, replace);
   if (!files) return files.error();
@@ -181,12 +202,14 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   const auto file = std::make_shared<std::string>();
   const auto format = std::make_shared<std::string>();
   const auto folder = std::make_shared<std::string>();
-  const auto replace = std::make_shared<bool>(false);
+  const auto of_bids = std::make_shared<BidsOptions>();
+  of_bids->version = cli::Version();
   command->add_option("FILE", *file, "Recording, MCAP file")->required();
   command
       ->add_option(
           "--format", *format,
-          "Output format: csv, xdf (Lab Streaming Layer), or of reconstructed bodies bvh "
+          "Output format: csv, xdf (Lab Streaming Layer), bids (a subject's task in a data set), "
+          "or of reconstructed bodies bvh "
           "(rotations), trc (joint centres), "
           "mot (joint angles and forces under the feet, for OpenSim) or c3d (joint centres and "
           "forces under the feet)")
@@ -194,10 +217,15 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   command
       ->add_option(
           "--out", *folder,
-          "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: two)")
+          "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: two); of "
+          "bids the data set, which is made where there is none")
       ->required();
-  command->add_flag("--force", *replace, "Overwrite existing files");
-  command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *replace), shared); });
+  command->add_option("--subject", of_bids->subject,
+                      "Of bids: label of the subject, letters and digits (default 01)");
+  command->add_option("--task", of_bids->task,
+                      "Of bids: label of the task, letters and digits (default: the file's name)");
+  command->add_flag("--force", of_bids->replace, "Overwrite existing files");
+  command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *of_bids), shared); });
 }
 
 void AddRepairCommand(CLI::App& app, Shared& shared) {

@@ -5,11 +5,11 @@
 #include <map>
 #include <utility>
 
-#include "clients/study/bundle/bids.h"
 #include "clients/study/bundle/run_config.h"
 #include "clients/study/bundle/study_tables.h"
 #include "clients/study/bundle/trial_tables.h"
 #include "clients/study/journal/study_folder.h"
+#include "common/bids/tables.h"
 #include "common/recording/output_file.h"
 #include "common/recording/recorded_session.h"
 #include "common/units/units.h"
@@ -52,13 +52,10 @@ class BundleWriter {
     const auto survey = SurveyTable(people, key_, options_.with_text);
     const auto participants = ParticipantsTable(people, key_);
     const auto trials = TrialsTable(people, key_, file_of_);
-    const ordered_json description = {
-        {"Name", options_.study_name},
-        {"BIDSVersion", "1.9.0"},
-        {"DatasetType", "raw"},
-        {"GeneratedBy", {{{"Name", "footing-study"}, {"Version", options_.version}}}}};
+    const bids::File description =
+        bids::DescriptionFile(options_.study_name, "footing-study", options_.version);
     for (const auto& [path, text] :
-         {std::pair<std::string, std::string>("dataset_description.json", Json(description)),
+         {std::pair<std::string, std::string>(description.name, description.text),
           {"README", kReadme},
           {"participants.tsv", participants.tsv},
           {"participants.json", Json(participants.codebook)},
@@ -97,11 +94,11 @@ class BundleWriter {
       const double since_first_s =
           NanosecondsToSeconds(trial.started_wall_ns - person.trials.front().started_wall_ns);
       for (const std::string& file : *written) {
-        scans.push_back({"motion/" + file, ShiftedTime(since_first_s)});
+        scans.push_back({"motion/" + file, bids::ShiftedTime(since_first_s)});
       }
     }
     if (scans.size() == 1) return {};
-    return Write(subject + "/" + subject + "_scans.tsv", Tsv(scans));
+    return Write(subject + "/" + subject + "_scans.tsv", bids::Tsv(scans));
   }
 
   /// The names of its motion files; none when there is no recording.
@@ -112,32 +109,29 @@ class BundleWriter {
     if (!session) return Skip(subject, trial, session.error());
     const auto tables = ReadTrial(*session, trial);
     if (!tables) return Skip(subject, trial, tables.error());
-    const std::string task = LabelOf(trial.phase);
+    const std::string task = bids::LabelOf(trial.phase);
     const std::string about = trial.interface + ", track " + trial.track +
                               (trial.task.empty() ? "" : ", task " + trial.task);
-    const std::string run = "_run-" + std::to_string(trial.attempt) + "_";
+    const std::string run = "_run-" + std::to_string(trial.attempt);
     const std::string stem = subject + "_task-" + task;
     const std::string folder = subject + "/motion/";
     std::vector<std::string> files;
-    for (const MotionTable& table : tables->tables) {
-      const std::string name = stem + "_tracksys-" + table.tracksys + run;
-      files.push_back(name + "motion.tsv");
-      for (const auto& [end, text] :
-           {std::pair<std::string, std::string>("motion.tsv", MotionTsv(table)),
-            {"motion.json", Json(MotionJson(table, task, about))},
-            {"channels.tsv", ChannelsTsv(table)}}) {
-        if (const auto done = Write(folder + name + end, text); !done) return done.error();
+    for (const bids::MotionTable& table : tables->tables) {
+      const auto written = bids::MotionFiles(table, stem, run, task, about);
+      files.push_back(written.front().name);
+      for (const bids::File& file : written) {
+        if (const auto done = Write(folder + file.name, file.text); !done) return done.error();
       }
     }
     if (const ordered_json config = AnonymousConfig(tables->config); !config.is_null()) {
-      const auto done = Write("sourcedata/config/" + stem + run + "config.json", Json(config));
+      const auto done = Write("sourcedata/config/" + stem + run + "_config.json", Json(config));
       if (!done) return done.error();
     }
-    file_of_[&trial] = stem + "_tracksys-*" + run + "motion.tsv";
+    file_of_[&trial] = stem + "_tracksys-*" + run + "_motion.tsv";
     ++report_.trials;
     for (const auto& [end, text] :
-         {std::pair<std::string, std::string>("events.tsv", EventsTsv(tables->events)),
-          {"events.json", Json(EventsCodebook())}}) {
+         {std::pair<std::string, std::string>("_events.tsv", bids::EventsTsv(tables->events)),
+          {"_events.json", Json(bids::EventsCodebook())}}) {
       if (const auto done = Write(folder + stem + run + end, text); !done) return done.error();
     }
     return files;

@@ -5,13 +5,15 @@
 #include <set>
 #include <tuple>
 
-#include "clients/study/bundle/bids.h"
+#include "common/bids/tables.h"
 #include "common/stream/trial.h"
 #include "common/text/number.h"
 
 namespace footing::study::bundle {
 namespace {
 
+using bids::Column;
+using bids::Tsv;
 using nlohmann::ordered_json;
 using records::Records;
 using records::Trial;
@@ -23,12 +25,6 @@ std::string Cell(double value, int decimals) {
 }
 
 std::string YesOrNo(bool yes) { return yes ? "yes" : "no"; }
-
-ordered_json Column(const std::string& description, const std::string& units = "") {
-  ordered_json column = {{"Description", description}};
-  if (!units.empty()) column["Units"] = units;
-  return column;
-}
 
 /// What a survey's column begins with: "wrist", at the end "final_wrist", "final" of the whole
 /// study.
@@ -186,16 +182,6 @@ DocumentedTable TrialsTable(const std::vector<Records>& people, const Participan
                    [](const auto& a, const auto& b) { return a[0] < b[0]; });
   table.tsv = Tsv(rows);
   return table;
-}
-
-ordered_json EventsCodebook() {
-  return {{"onset", Column("From the first frame of the trial, as the channel latency", "s")},
-          {"duration", Column("0: an instant", "s")},
-          {"trial_type",
-           Column("trial_ready, trial_running (start line), trial_finished (finish line), "
-                  "trial_stopped; failure_KIND; put_back, put_back_by_operator; task_done; "
-                  "gait_NAME: the character has changed to this gait")},
-          {"counts", Column("no: a failure that was undone, by mistake of the detection")}};
 }
 
 }  // namespace footing::study::bundle

@@ -26,7 +26,5 @@ DocumentedTable SurveyTable(const std::vector<records::Records>& people, const P
 /// is no recording.
 DocumentedTable TrialsTable(const std::vector<records::Records>& people, const ParticipantKey& key,
                             const std::map<const records::Trial*, std::string>& file_of);
-/// What the columns of an events.tsv mean.
-nlohmann::ordered_json EventsCodebook();
 
 }  // namespace footing::study::bundle

@@ -48,7 +48,13 @@ def main(program, writer):
         assert export.returncode == 0 and streams["footingd/motion/1"] == 300, export
         assert run("export", repaired, "--format", "xdf", "--out", folder / "xdf").returncode == 2
 
-        for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bvh, trc, mot, c3d"),
+        export = run("export", repaired, "--format", "bids", "--out", folder / "bids", "--task", "walk", "--json")
+        motion = pathlib.Path(json.loads(export.stdout)["files"][0]["path"])
+        assert motion.name.startswith("sub-01_task-walk_tracksys-"), export
+        assert len(motion.read_text().splitlines()) == 300, motion
+        assert run("export", repaired, "--format", "bids", "--out", folder / "bids", "--subject", "p_1").returncode == 2
+
+        for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bids, bvh, trc, mot, c3d"),
                             (("serve", whole, "--server", "none"), "there are: footingd"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
                             (("record", "--connect", "unix:/x", "--out", whole), "--force"),

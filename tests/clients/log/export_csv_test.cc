@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "common/recording/recording_writer.h"
-#include "common/recording/stream_recorder.h"
 #include "footing/v1/session.pb.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
+#include "tests/common/made_recording.h"
 
 namespace footing::log_client {
 namespace {
@@ -33,14 +33,9 @@ TEST_F(ExportCsvTest, OneFileATopicWithARowASample) {
 
 /// One device with a role, one character with named links, and a server whose wall time is known.
 void WriteNamedRecording(const std::string& path) {
-  auto writer = recording::RecordingWriter::Create(path, {"test", false, {}});
-  ASSERT_TRUE(writer.ok());
-  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
-  v1::Welcome welcome;
-  welcome.set_server_id("footingd");
-  welcome.set_host_ns(5'000'000'000);
-  welcome.set_wall_time_ns(1'760'000'005'000'000'000);  // 2025-10-09T08:53:25Z.
-  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  test::MadeRecording recording(path);
+  recording.Begin("footingd", 5'000'000'000,
+                  1'760'000'005'000'000'000);  // 2025-10-09T08:53:25Z.
   v1::Tick tick;
   tick.set_sequence(1);
   tick.set_host_ns(6'000'000'000);
@@ -51,7 +46,7 @@ void WriteNamedRecording(const std::string& path) {
   skeleton.add_links()->set_name("hips");
   skeleton.add_links()->set_name("left,knee");
   skeleton.add_contact_points("left_foot");
-  ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
+  recording.Add(tick);
   tick.Clear();
   tick.set_sequence(2);
   tick.set_host_ns(6'250'000'000);
@@ -60,8 +55,7 @@ void WriteNamedRecording(const std::string& path) {
   v1::Character& character = *tick.mutable_characters()->add_characters();
   character.add_links();
   character.add_links();
-  ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
-  ASSERT_TRUE(writer->Finish().ok());
+  recording.Add(tick);
 }
 
 TEST_F(ExportCsvTest, RowsSayTheirTimeTheirDevicesRoleAndTheirJointsNames) {

@@ -5,11 +5,10 @@
 
 #include <cmath>
 
-#include "common/recording/recording_writer.h"
-#include "common/recording/stream_recorder.h"
 #include "footing/v1/session.pb.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
+#include "tests/common/made_recording.h"
 
 namespace footing::log_client {
 namespace {
@@ -58,19 +57,15 @@ TEST_F(ExportXdfTest, AnotherReaderFindsEverySampleWithItsTime) {
 
 /// A board that has a role and its own time, one without either, and an event.
 void WriteEventRecording(const std::string& path) {
-  auto writer = recording::RecordingWriter::Create(path, {"test", false, {}});
-  ASSERT_TRUE(writer.ok());
-  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
-  v1::Welcome welcome;
-  welcome.set_server_id("footingd");
-  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  test::MadeRecording recording(path);
+  recording.Begin("footingd");
   v1::Tick tick;
   tick.set_sequence(1);
   tick.set_host_ns(6'000'000'000);
   v1::DeviceStatus& status = *tick.mutable_status()->add_devices();
   status.set_device(7);
   status.set_role(v1::DEVICE_ROLE_LEFT_BOARD);
-  ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
+  recording.Add(tick);
   for (int i = 0; i < 3; ++i) {
     tick.Clear();
     tick.set_sequence(static_cast<std::uint64_t>(2 + i));
@@ -90,9 +85,8 @@ void WriteEventRecording(const std::string& path) {
       event.set_kind(v1::Event::KIND_TASK);
       event.set_text("jump <high> & far");
     }
-    ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
+    recording.Add(tick);
   }
-  ASSERT_TRUE(writer->Finish().ok());
 }
 
 TEST_F(ExportXdfTest, EachDeviceIsAStreamUnderItsRoleAndEventsAreMarkers) {

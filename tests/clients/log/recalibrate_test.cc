@@ -6,11 +6,10 @@
 #include <fstream>
 
 #include "common/recording/recorded_session.h"
-#include "common/recording/recording_writer.h"
-#include "common/recording/stream_recorder.h"
 #include "footing/v1/session.pb.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
+#include "tests/common/made_recording.h"
 
 namespace footing::log_client {
 namespace {
@@ -21,12 +20,8 @@ class RecalibrateTest : public TemporaryFolder {};
 
 /// A camera that was not calibrated, and a skeleton's tracker beside it.
 void WriteHands(const std::string& path) {
-  auto writer = recording::RecordingWriter::Create(path, {"test", false, {}});
-  ASSERT_TRUE(writer.ok());
-  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
-  v1::Welcome welcome;
-  welcome.set_server_id("footingd");
-  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  test::MadeRecording recording(path);
+  recording.Begin("footingd");
   v1::Tick tick;
   tick.set_sequence(1);
   tick.set_host_ns(10'000'000);
@@ -41,9 +36,7 @@ void WriteHands(const std::string& path) {
     if (sample.tracker() == "camera") sample.mutable_tracker_pose()->set_qw(1);
   }
   tick.mutable_motion()->add_samples()->set_device(3);
-  ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
-  ASSERT_TRUE(recorder.OnEnd({}, 0).ok());
-  ASSERT_TRUE(writer->Finish().ok());
+  recording.Add(tick);
 }
 
 /// At (2, 0, 1), looking along -x: its z is W's -x.

@@ -9,10 +9,10 @@
 #include <tuple>
 
 #include "common/recording/recorded_session.h"
-#include "common/recording/stream_recorder.h"
 #include "common/units/units.h"
 #include "daemon/sensor/service/hub.h"
 #include "daemon/sensor/service/publish.h"
+#include "tests/common/made_recording.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::stream_client {
@@ -160,12 +160,8 @@ std::vector<SimulatedDevice> MakeDevices() {
 }
 
 void Write(const std::string& path, const std::vector<v1::Tick>& ticks, bool with_identity) {
-  auto writer = recording::RecordingWriter::Create(path, {"test", true, {}});
-  ASSERT_TRUE(writer.ok());
-  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
-  v1::Welcome welcome;
-  welcome.set_server_id("footingd");
-  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  test::MadeRecording recording(path);
+  recording.Begin("footingd");
   for (v1::Tick tick : ticks) {
     for (v1::DeviceStatus& status : *tick.mutable_status()->mutable_devices()) {
       if (with_identity) break;
@@ -176,9 +172,8 @@ void Write(const std::string& path, const std::vector<v1::Tick>& ticks, bool wit
     for (v1::RawReport& raw : *tick.mutable_raw()->mutable_reports()) {
       if (!with_identity) raw.clear_feature();
     }
-    ASSERT_TRUE(recorder.OnTick(tick, tick.host_ns()).ok());
+    recording.Add(tick);
   }
-  ASSERT_TRUE(writer->Finish().ok());
 }
 
 /// Every measured value with when it was received, by serial.

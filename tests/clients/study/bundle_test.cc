@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "clients/study/bundle/anonymous.h"
-#include "clients/study/bundle/bids.h"
 #include "clients/study/bundle/study_tables.h"
 
 namespace footing::study::bundle {
@@ -15,50 +14,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Two channels and the time, at 50 Hz.
-MotionTable TwoChannels(int rows) {
-  MotionTable table{"lefthand",
-                    "wiimote",
-                    {{"latency", "n/a", "LATENCY", "n/a", "s"},
-                     {"accel_x", "x", "ACCEL", "left_hand", "m/s^2"},
-                     {"gyro_x", "x", "GYRO", "left_hand", "rad/s"}},
-                    {}};
-  for (int i = 0; i < rows; ++i) {
-    table.cells.insert(table.cells.end(), {1 + 0.02 * i, -9.81, i == 0 ? kNan : 0.5});
-  }
-  return table;
-}
-
-TEST(Bids, TablesAreTabSeparatedWithNothingThatBreaksALine) {
-  EXPECT_EQ(Tsv({{"a", ""}, {"tab\there", "line\r\nend"}}), "a\tn/a\ntab here\tline  end\n");
-}
-
-TEST(Bids, MotionHasNoHeaderAndAColumnForEachChannel) {
-  const MotionTable table = TwoChannels(3);
-  EXPECT_THAT(MotionTsv(table), testing::StartsWith("1.000000\t-9.810000\tn/a\n1.020000\t"));
-  EXPECT_NEAR(SamplingRateHz(table), 50, 1e-9);  // Two intervals in 0.04 s.
-  EXPECT_EQ(SamplingRateHz(TwoChannels(1)), 0);
-  EXPECT_THAT(ChannelsTsv(table), HasSubstr("accel_x\tx\tACCEL\tleft_hand\tm/s^2\t50.000\n"));
-  const auto json = MotionJson(table, "wriststraight1", "wrist, track straight");
-  EXPECT_EQ(json["MotionChannelCount"], 3);
-  EXPECT_EQ(json["ACCELChannelCount"], 1);
-  EXPECT_EQ(json["TrackedPointsCount"], 1);
-  EXPECT_EQ(json["TrackingSystemName"], "lefthand");
-}
-
-TEST(Bids, EventsSayWhichFailuresCount) {
-  EXPECT_EQ(EventsTsv({{1.5, "failure_jump", false}, {2, "task_done", true}}),
-            "onset\tduration\ttrial_type\tcounts\n"
-            "1.500\t0\tfailure_jump\tno\n2.000\t0\ttask_done\tyes\n");
-}
-
-TEST(Bids, LabelsHaveLettersAndDigitsAndInstantsCountFrom1900) {
-  EXPECT_EQ(LabelOf("wrist.straight1"), "wriststraight1");
-  EXPECT_EQ(ShiftedTime(0), "1900-01-01T00:00:00");
-  EXPECT_EQ(ShiftedTime(90.9), "1900-01-01T00:01:30");
-  EXPECT_EQ(ShiftedTime(31 * 86400.0), "1900-02-01T00:00:00");
-}
 
 TEST(ParticipantKey, KeepsNumbersAndAddsNewOnesInRandomOrder) {
   const std::vector<std::string> codes = {"A", "B", "C", "D", "E", "F", "G", "H"};

@@ -1,4 +1,4 @@
-#include "clients/study/bundle/bids.h"
+#include "common/bids/tables.h"
 
 #include <algorithm>
 #include <cctype>
@@ -10,7 +10,7 @@
 
 #include "common/text/number.h"
 
-namespace footing::study::bundle {
+namespace footing::bids {
 namespace {
 
 using nlohmann::ordered_json;
@@ -19,6 +19,19 @@ constexpr const char* kNotAvailable = "n/a";
 constexpr int kDecimals = 6;
 
 }  // namespace
+
+Channel Latency() { return {"latency", "n/a", "LATENCY", "n/a", "s"}; }
+
+void AddVector(const std::string& name, const std::string& type, const std::string& point,
+               const std::string& units, MotionTable& table) {
+  for (const char* component : {"x", "y", "z"}) {
+    table.channels.push_back({name + "_" + component, component, type, point, units});
+  }
+}
+
+void Append(std::initializer_list<double> values, MotionTable& table) {
+  table.cells.insert(table.cells.end(), values);
+}
 
 std::string Tsv(const std::vector<std::vector<std::string>>& rows) {
   std::string text;
@@ -83,12 +96,46 @@ ordered_json MotionJson(const MotionTable& table, const std::string& task,
   return json;
 }
 
-std::string EventsTsv(const std::vector<TrialEvent>& events) {
+std::string EventsTsv(const std::vector<Event>& events) {
   std::vector<std::vector<std::string>> rows = {{"onset", "duration", "trial_type", "counts"}};
-  for (const TrialEvent& one : events) {
+  for (const Event& one : events) {
     rows.push_back({text::Fixed(one.onset_s, 3), "0", one.trial_type, one.counts ? "yes" : "no"});
   }
   return Tsv(rows);
+}
+
+ordered_json Column(const std::string& description, const std::string& units) {
+  ordered_json column = {{"Description", description}};
+  if (!units.empty()) column["Units"] = units;
+  return column;
+}
+
+ordered_json EventsCodebook() {
+  return {{"onset", Column("On the time of the channel latency", "s")},
+          {"duration", Column("0: an instant", "s")},
+          {"trial_type",
+           Column("trial_ready, trial_running (start line), trial_finished (finish line), "
+                  "trial_stopped; failure_KIND; put_back, put_back_by_operator; task_done; "
+                  "gait_NAME: the character has changed to this gait")},
+          {"counts", Column("no: a failure that was undone, by mistake of the detection")}};
+}
+
+std::vector<File> MotionFiles(const MotionTable& table, const std::string& stem,
+                              const std::string& run, const std::string& task,
+                              const std::string& task_description) {
+  const std::string name = stem + "_tracksys-" + table.tracksys + run + "_";
+  return {{name + "motion.tsv", MotionTsv(table)},
+          {name + "motion.json", MotionJson(table, task, task_description).dump(2) + "\n"},
+          {name + "channels.tsv", ChannelsTsv(table)}};
+}
+
+File DescriptionFile(const std::string& name, const std::string& program,
+                     const std::string& version) {
+  const ordered_json json = {{"Name", name},
+                             {"BIDSVersion", "1.9.0"},
+                             {"DatasetType", "raw"},
+                             {"GeneratedBy", {{{"Name", program}, {"Version", version}}}}};
+  return {"dataset_description.json", json.dump(2) + "\n"};
 }
 
 std::string LabelOf(const std::string& name) {
@@ -113,4 +160,4 @@ std::string ShiftedTime(double seconds) {
   return text;
 }
 
-}  // namespace footing::study::bundle
+}  // namespace footing::bids

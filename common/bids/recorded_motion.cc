@@ -1,0 +1,101 @@
+#include "common/bids/recorded_motion.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "common/bids/character_tables.h"
+#include "common/bids/device_tables.h"
+
+namespace footing::bids {
+namespace {
+
+using recording::RecordedServer;
+using v1::Tick;
+
+std::int64_t WallOf(const RecordedServer& server, std::int64_t host_ns) {
+  return host_ns + server.wall_time_ns - server.host_ns;
+}
+
+class Reader {
+ public:
+  explicit Reader(const Choice& choice) : choice_(choice), devices_(choice.with_role) {}
+
+  Result<RecordedMotion> Run(const recording::RecordedSession& session) {
+    if (choice_.trial.empty()) zero_wall_ns_ = FirstTick(session);
+    for (const RecordedServer& server : session.servers()) {
+      if (server.server_id != "footing-sim") continue;
+      if (const auto done = ReadSimulation(server); !done) return done.error();
+    }
+    if (!zero_wall_ns_) {
+      return InvalidData(session.path() + (choice_.trial.empty()
+                                               ? " has no ticks"
+                                               : ": no frame of trial " + choice_.trial));
+    }
+    for (const RecordedServer& server : session.servers()) {
+      if (server.server_id != "footingd") continue;
+      if (const auto done = ReadDevices(server); !done) return done.error();
+    }
+    motion_.tables = characters_.Take();
+    for (const auto& [name, table] : devices_.tables()) motion_.tables.push_back(table);
+    return std::move(motion_);
+  }
+
+ private:
+  static std::optional<std::int64_t> FirstTick(const recording::RecordedSession& session) {
+    std::optional<std::int64_t> first_ns;
+    for (const RecordedServer& server : session.servers()) {
+      for (const recording::RecordedTick& tick : server.ticks) {
+        const std::int64_t wall_ns = WallOf(server, tick.host_ns);
+        first_ns = std::min(first_ns.value_or(wall_ns), wall_ns);
+      }
+    }
+    return first_ns;
+  }
+
+  bool IsChosen(const Tick& tick) const {
+    return choice_.trial.empty() ||
+           (tick.characters().characters_size() > 0 &&
+            tick.characters().characters(0).trial().trial() == choice_.trial);
+  }
+
+  Result<void> ReadSimulation(const RecordedServer& server) {
+    const auto ticks = ReadTicks(server, {Tick::kSkeletonsFieldNumber, Tick::kCharactersFieldNumber,
+                                          Tick::kEventsFieldNumber, Tick::kConfigFieldNumber});
+    if (!ticks) return ticks.error();
+    for (const Tick& tick : *ticks) {
+      if (tick.has_config()) motion_.config = tick.config().json();
+      const bool chosen = IsChosen(tick);
+      if (chosen && !zero_wall_ns_) zero_wall_ns_ = WallOf(server, tick.host_ns());
+      if (!zero_wall_ns_) continue;
+      const RunClock clock(server, *zero_wall_ns_);
+      if (chosen) characters_.Add(clock(tick.host_ns()), tick);
+      AddEvents(tick, clock, choice_.undone, motion_.events);
+    }
+    return {};
+  }
+
+  Result<void> ReadDevices(const RecordedServer& server) {
+    const auto ticks = ReadTicks(
+        server, {Tick::kStatusFieldNumber, Tick::kMotionFieldNumber, Tick::kBoardsFieldNumber,
+                 Tick::kNunchukFieldNumber, Tick::kHandsFieldNumber});
+    if (!ticks) return ticks.error();
+    devices_.Start(RunClock(server, *zero_wall_ns_));
+    for (const Tick& tick : *ticks) devices_.Add(tick);
+    return {};
+  }
+
+  const Choice& choice_;
+  std::optional<std::int64_t> zero_wall_ns_;
+  CharacterTables characters_;
+  DeviceTables devices_;
+  RecordedMotion motion_;
+};
+
+}  // namespace
+
+Result<RecordedMotion> ReadMotion(const recording::RecordedSession& session, const Choice& choice) {
+  return Reader(choice).Run(session);
+}
+
+}  // namespace footing::bids
