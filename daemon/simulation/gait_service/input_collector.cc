@@ -27,6 +27,11 @@ bool IsFinite(const v1::BoardSample& sample) {
          std::isfinite(sample.cop_x_m()) && std::isfinite(sample.cop_y_m());
 }
 
+/// A sample that is used as it is: decoded when it arrived, it then waited for its tick.
+FeatureStamps OfSample(std::int64_t received_ns, const v1::Tick& tick) {
+  return {0, received_ns, received_ns, tick.host_ns(), 0};
+}
+
 }  // namespace
 
 InputCollector::InputCollector(std::string rig, const mapping::InterfaceOptions& options)
@@ -111,7 +116,7 @@ bool InputCollector::TakeStick(const v1::Tick& tick, std::int64_t now_ns) {
     stick.x = sample.stick_x();
     stick.y = sample.stick_y();
     stick_ = {now_ns, sample.simulated()};
-    stamps_ = {0, sample.received_ns(), tick.host_ns(), tick.host_ns(), 0};
+    stamps_ = OfSample(sample.received_ns(), tick);
     taken = true;
   }
   for (const v1::MotionSample& sample : tick.motion().samples()) {
@@ -145,7 +150,7 @@ bool InputCollector::TakeBoards(const v1::Tick& tick, std::int64_t now_ns) {
         .cop_x_m = cop_W_m.x(),
         .cop_y_m = cop_W_m.y()};
     (left ? left_board_ : right_board_) = {now_ns, sample.simulated()};
-    stamps_ = {0, sample.received_ns(), tick.host_ns(), tick.host_ns(), 0};
+    stamps_ = OfSample(sample.received_ns(), tick);
     taken = true;
   }
   return taken;

@@ -65,6 +65,17 @@ TEST(InputCollector, TheStickIsThatOfTheRigsHand) {
   EXPECT_TRUE(collector.inputs().simulated);
 }
 
+TEST(InputCollector, AStickThatWaitsForItsTickIsDecodedWhenItArrives) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  v1::Tick tick = StickTick();
+  AddStick(tick, 3, 0.3, 0.7);
+  tick.mutable_nunchuk()->mutable_samples(0)->set_received_ns(2 * kMs);
+  tick.set_host_ns(9 * kMs);
+  collector.Take(tick, 10 * kMs);
+  EXPECT_EQ(collector.stamps().decoded_ns, 2 * kMs);
+  EXPECT_EQ(collector.stamps().computed_ns, 9 * kMs);
+}
+
 TEST(InputCollector, APressWithinOneTickCounts) {
   InputCollector collector("", {.interface = UserInterface::kJoystick});
   v1::Tick tick = StickTick();
