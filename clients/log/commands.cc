@@ -124,12 +124,15 @@ Result<ordered_json> RunBids(const std::string& file, const std::string& folder,
 
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
                                const std::string& folder, const BidsOptions& of_bids) {
+  if (format == "bids") return RunBids(file, folder, of_bids);
+  if (!of_bids.subject.empty() || !of_bids.task.empty()) {
+    return UsageError("--subject and --task need --format bids");
+  }
   const bool replace = of_bids.replace;
   if (const auto body = BodyFormatOf(format)) {
     return RunBodies(file, format, *body, folder, replace);
   }
   if (format == "xdf") return RunXdf(file, folder, replace);
-  if (format == "bids") return RunBids(file, folder, of_bids);
   if (format != "csv") {
     return UsageError("unknown --format " + format +
                       "; there are: csv, xdf, bids, bvh, trc, mot, c3d");
@@ -215,15 +218,15 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
           "forces under the feet)")
       ->required();
   command
-      ->add_option(
-          "--out", *folder,
-          "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: two); of "
-          "bids the data set, which is made where there is none")
+      ->add_option("--out", *folder,
+                   "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: "
+                   "two); with bids the data set, created if it does not exist")
       ->required();
   command->add_option("--subject", of_bids->subject,
-                      "Of bids: label of the subject, letters and digits (default 01)");
-  command->add_option("--task", of_bids->task,
-                      "Of bids: label of the task, letters and digits (default: the file's name)");
+                      "With bids: label of the subject, letters and digits (default 01)");
+  command->add_option(
+      "--task", of_bids->task,
+      "With bids: label of the task, letters and digits (default: the file's name)");
   command->add_flag("--force", of_bids->replace, "Overwrite existing files");
   command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *of_bids), shared); });
 }

@@ -32,9 +32,9 @@ class DataSet {
   DataSet(std::string folder, const BidsOptions& options)
       : folder_(std::move(folder)), options_(options) {}
 
-  Result<ExportedBids> Add(const bids::RecordedMotion& motion, const std::string& task,
-                           const std::string& recording) {
-    const std::string subject = "sub-" + options_.subject;
+  Result<ExportedBids> Add(const bids::RecordedMotion& motion, const std::string& label,
+                           const std::string& task, const std::string& recording) {
+    const std::string subject = "sub-" + label;
     const std::string stem = subject + "_task-" + task;
     const std::string motions = folder_ + "/" + subject + "/motion";
     if (const auto made = MakeFolder(motions); !made) return made.error();
@@ -102,8 +102,9 @@ class DataSet {
 Result<ExportedBids> ExportBids(const std::string& recording, const std::string& folder,
                                 const BidsOptions& options) {
   const std::string name = std::filesystem::path(recording).stem().string();
+  const std::string subject = options.subject.empty() ? "01" : options.subject;
   const std::string task = options.task.empty() ? bids::LabelOf(name) : options.task;
-  for (const auto& [option, label] : {std::pair("--subject", options.subject), {"--task", task}}) {
+  for (const auto& [option, label] : {std::pair("--subject", subject), {"--task", task}}) {
     if (label.empty() || bids::LabelOf(label) != label) {
       return UsageError(std::string(option) + " '" + label +
                         "' cannot be a label of a data set: use letters and digits");
@@ -118,7 +119,7 @@ Result<ExportedBids> ExportBids(const std::string& recording, const std::string&
         recording +
         " has no samples of a Wiimote, Balance Board or Nunchuk and no frame of footing-sim");
   }
-  return DataSet(folder, options).Add(*motion, task, name);
+  return DataSet(folder, options).Add(*motion, subject, task, name);
 }
 
 }  // namespace footing::log_client

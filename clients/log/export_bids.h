@@ -9,8 +9,8 @@
 namespace footing::log_client {
 
 struct BidsOptions {
-  std::string subject = "01";  ///< Letters and digits.
-  std::string task;            ///< Letters and digits; empty: those of the recording's name.
+  std::string subject;  ///< Letters and digits; empty: "01".
+  std::string task;     ///< Letters and digits; empty: those of the recording's name.
   bool replace = false;
   std::string version;
 };

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
       "  footing-log info a.mcap --json\n"
       "  footing-log export a.mcap --format csv --out a/\n"
       "  footing-log export a.mcap --format xdf --out a/\n"
+      "  footing-log export a.mcap --format bids --out data/ --subject 02\n"
       "  footing-log repair cut.mcap --out whole.mcap\n"
       "  footing-log recalibrate a.mcap --camera camera.json --out again.mcap\n"
       "  footing-log serve a.mcap --listen unix:/tmp/replay.sock");

@@ -41,7 +41,7 @@ class DeviceTables {
 
  private:
   struct Device {
-    std::string point;  ///< Empty: left out.
+    std::string point;
     std::string kind;
   };
 

@@ -55,6 +55,7 @@ def main(program, writer):
         assert run("export", repaired, "--format", "bids", "--out", folder / "bids", "--subject", "p_1").returncode == 2
 
         for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bids, bvh, trc, mot, c3d"),
+                            (("export", whole, "--format", "csv", "--out", folder / "s", "--subject", "02"), "need --format bids"),
                             (("serve", whole, "--server", "none"), "there are: footingd"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
                             (("record", "--connect", "unix:/x", "--out", whole), "--force"),
