@@ -49,6 +49,8 @@ def wrong_starts(stage):
            "--listen", f"unix:{stage.folder}/unused.sock")
     expect(stage, INVALID, f"{config}: not JSON", "footing-sim", "--track", config, "--listen",
            f"unix:{stage.folder}/unused.sock")
+    expect(stage, INVALID, "is not JSON", "footing-sim", "--engine", "pose", "--subject", config, "--listen",
+           f"unix:{stage.folder}/unused.sock")
     expect(stage, INVALID, f"{config}, in place of wrist_mapping.json", "footing-sim", "--set",
            f"mapping_table={config}", "--listen", f"unix:{stage.folder}/unused.sock")
 
