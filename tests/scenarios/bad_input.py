@@ -104,8 +104,14 @@ def no_server(stage):
     expect(stage, NO_DEVICE, waits, "footing-relay", "publish", "--connect", nobody, "--nats", broker, "--seconds", 1)
     expect(stage, FAILURE, "connection refused", "footing-relay", "serve", "--nats", broker, "--listen",
            f"unix:{stage.folder}/edge.sock", "--seconds", 1)
-    expect(stage, NO_DEVICE, f"footingd --source stream:{nobody}", "footing-stream", "user", "--script", "walk", "--to",
-           nobody, "--seconds", 1)
+    starts_it = f"footingd --source stream:{nobody}"
+    expect(stage, NO_DEVICE, starts_it, "footing-stream", "user", "--script", "walk", "--to", nobody, "--seconds", 1)
+    expect(stage, NO_DEVICE, starts_it, "footing-skeleton", "--listen", "127.0.0.1:0", "--to", nobody, "--seconds", 1)
+    assert stage.run("footing-skeleton", "--listen", "127.0.0.1:0", "--no-publish", "--seconds", 1).returncode == 0
+    frames = stage.folder / "frames"
+    stage.run_json("footing-eval", "spheres", "--distance-m", "1.5", "--frames", 1, "--out", frames)
+    expect(stage, NO_DEVICE, starts_it, "footing-camera", "--camera", frames / "camera.json", "--frames", frames,
+           "--repeat", "--to", nobody, "--sensor", nobody, "--preview", "none", "--seconds", 1)
 
 
 def garbage(address):
