@@ -72,6 +72,8 @@ def wrong_words(stage):
     expect(stage, USAGE, "--token-file", "footing-relay", "serve", *broker, "--listen", "tls:127.0.0.1:7460")
     expect(stage, USAGE, "unknown --channel nonsense; there are: status, motion", "footing-relay", "publish", *broker,
            "--channel", "nonsense")
+    expect(stage, USAGE, "does not apply to --mode paper", "footing-eval", "momentum", "--motion", "clip.bvh", "--mode",
+           "paper", "--lag-ms", 100)
     expect(stage, USAGE, "--test t: must be one of dunnett, ", "footing-eval", "stats", "--test", "t", "--data", "a.csv")
     expect(stage, USAGE, "--trials -1: must be from 1 to ", "footing-eval", "monkey", "--trials", -1)
     expect(stage, USAGE, "not a broker's address", "footing-relay", "publish", "--nats", "nonsense")
