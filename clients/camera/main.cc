@@ -80,7 +80,7 @@ int RunTracking(camera::TrackingOptions& options, const camera::CommandLine& lin
   const auto report = camera::Track(options);
   if (!report) return cli::Report(report.error());
   Print(*report, *camera, line.json);
-  return 0;
+  return report->sent_on ? 0 : cli::Report(report->sent_on.error());
 }
 
 }  // namespace

@@ -69,7 +69,9 @@ class Tracking {
     if (options_.seconds > 0) {
       limit_.expires_after(std::chrono::milliseconds(std::llround(1e3 * options_.seconds)));
       limit_.async_wait([this](boost::system::error_code error) {
-        if (!error) End({});
+        if (error) return;
+        if (!link_.was_open()) report_.sent_on = device_link::NoFootingd(options_.to);
+        End({});
       });
     }
     link_.Start();

@@ -58,10 +58,11 @@ struct DialectFlags {
   }
 };
 
-int Print(const Result<nlohmann::ordered_json>& statistics, bool json, bool receiver) {
-  if (!statistics) return cli::Report(statistics.error());
-  std::cout << (json || !receiver ? statistics->dump() + "\n" : ToText(*statistics)) << std::flush;
-  return 0;
+int Receive(const ReceiverOptions& options, bool json) {
+  const auto done = RunReceiver(options);
+  if (!done) return cli::Report(done.error());
+  std::cout << (json ? done->statistics.dump() + "\n" : ToText(done->statistics)) << std::flush;
+  return done->published ? 0 : cli::Report(done->published.error());
 }
 
 struct ReceiverFlags {
@@ -148,8 +149,7 @@ std::function<void()> AddReceiver(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 1e6));
   return [flags, &shared] {
     const auto options = flags->Options();
-    shared.exit_code =
-        options ? Print(RunReceiver(*options), shared.json, true) : cli::Report(options.error());
+    shared.exit_code = options ? Receive(*options, shared.json) : cli::Report(options.error());
   };
 }
 
@@ -194,7 +194,9 @@ void AddSend(CLI::App& app, Shared& shared) {
       if (!clip) return clip.error();
       return SendClip(*clip, flags->options);
     };
-    shared.exit_code = Print(run(), shared.json, false);
+    const auto statistics = run();
+    if (statistics) std::cout << *statistics << std::endl;
+    shared.exit_code = statistics ? 0 : cli::Report(statistics.error());
   });
 }
 

@@ -13,6 +13,7 @@
 #include "clients/stream/watch.h"
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/device_link/device_link.h"
 #include "common/log/log.h"
 #include "common/timer/timer.h"
 #include "common/transport/address_or_default.h"
@@ -63,8 +64,7 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
   dialer->Start();
   timer::Run(io);
   if (came_in_time) return 0;
-  return cli::Report(NoDevice("no footingd listened for devices on " + to->Text() +
-                              "; start it with: footingd --source stream:" + to->Text()));
+  return cli::Report(device_link::NoFootingd(*to));
 }
 
 int RunPlayer(const std::string& simulation, const stream_client::Common& common) {

@@ -81,13 +81,26 @@ std::string Unconverted(const std::string& named) {
   return named.substr(0, at) + ": " + named.substr(at + 3) + " is not a number that it takes";
 }
 
+/// "--x: Value -1 not in range 0 to 6" and "--x: t not in {a,b}" in our words; otherwise `text`.
+std::string WrongValue(const std::string& text) {
+  static const std::regex kRange("(.*): Value (.*) not in range (.*)");
+  static const std::regex kMember(R"((.*): (.*) not in \{(.*)\})");
+  std::smatch parts;
+  if (std::regex_match(text, parts, kRange))
+    return parts[1].str() + " " + parts[2].str() + ": must be from " + parts[3].str();
+  if (!std::regex_match(text, parts, kMember)) return text;
+  return parts[1].str() + " " + parts[2].str() + ": must be one of " +
+         std::regex_replace(parts[3].str(), std::regex(","), ", ");
+}
+
 /// What is wrong with a command line, as one line.
 std::string Problem(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
   const bool has_subcommands =
       !command.get_subcommands([](const CLI::App*) { return true; }).empty();
-  const std::string what = WithShortNumbers(error.what());
-  if (unknown.empty() && has_subcommands && what == "A subcommand is required") {
+  const std::string what = WrongValue(WithShortNumbers(error.what()));
+  const bool has_word = !unknown.empty() && !unknown.front().starts_with('-');
+  if (!has_word && has_subcommands && what == "A subcommand is required") {
     return "a subcommand is missing; " + Subcommands(command);
   }
   constexpr std::string_view kConversion = "Could not convert: ";

@@ -126,16 +126,23 @@ Binder::Entry* Binder::Find(const std::string& key) {
   return nullptr;
 }
 
+/// Where a user finds the keys: a program prints those of its config.
+std::string Binder::AllKeys() const {
+  if (what_ == "config") return "--print-config lists the keys";
+  std::string keys = "there are:";
+  for (const Entry& entry : entries_) keys += (keys.ends_with(':') ? " " : ", ") + entry.key;
+  return keys;
+}
+
 Result<void> Binder::Assign(const std::string& key, const Json& value, const std::string& where,
                             const std::string& origin) {
   Entry* entry = Find(key);
   if (entry == nullptr) {
-    return UsageError("config: unknown key \"" + key + "\" in " + where +
-                      "; --print-config lists the keys");
+    return UsageError(what_ + ": unknown key \"" + key + "\" in " + where + "; " + AllKeys());
   }
   if (!entry->assign(value)) {
     const std::string shown = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return UsageError("config: " + key + " = " + shown + " in " + where + "; it must be " +
+    return UsageError(what_ + ": " + key + " = " + shown + " in " + where + "; it must be " +
                       entry->allowed);
   }
   entry->origin = origin;
@@ -147,10 +154,10 @@ Result<void> Binder::ApplyText(const std::string& text, const std::string& origi
   try {
     json = Json::parse(text, nullptr, true, true);
   } catch (const Json::exception& error) {  // Of a number too large for any type, too.
-    return UsageError("config: " + origin +
+    return UsageError(what_ + ": " + origin +
                       " is not JSON: " + std::string(text::WithoutTag(error.what())));
   }
-  if (!json.is_object()) return UsageError("config: " + origin + " must hold one JSON object");
+  if (!json.is_object()) return UsageError(what_ + ": " + origin + " must hold one JSON object");
   const auto lines = LinesOfKeys(text);
   for (const auto& [key, value] : json.items()) {
     const auto line = lines.find(key);
@@ -163,7 +170,7 @@ Result<void> Binder::ApplyText(const std::string& text, const std::string& origi
 
 Result<void> Binder::ApplyFile(const std::string& path) {
   const Result<std::string> text = ReadTextFile(path, 1u << 20);
-  if (!text) return UsageError("config: " + text.error().message);
+  if (!text) return UsageError(what_ + ": " + text.error().message);
   return ApplyText(*text, path);
 }
 

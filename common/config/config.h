@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/result/result.h"
@@ -18,6 +19,10 @@ namespace footing::config {
 /// range, file.
 class Binder {
  public:
+  Binder() = default;
+  /// For a file that is not a config; errors begin with `what` it is.
+  explicit Binder(std::string what) : what_(std::move(what)) {}
+
   void Number(const std::string& key, double& value, double min, double max,
               const std::string& documentation);
   void Integer(const std::string& key, std::int64_t& value, std::int64_t min, std::int64_t max,
@@ -70,6 +75,9 @@ class Binder {
   const Entry* Find(const std::string& key) const;
   Entry* Find(const std::string& key);
 
+  std::string AllKeys() const;
+
+  std::string what_ = "config";
   std::vector<Entry> entries_;
 };
 

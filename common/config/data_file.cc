@@ -98,6 +98,8 @@ Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::
   if (is_path) return ReadTextFile(name_or_path);
   auto read = ReadNamed(name_or_path, folder, data_folder);
   if (read) return read;
+  std::error_code unknown;
+  if (std::filesystem::is_regular_file(name_or_path, unknown)) return ReadTextFile(name_or_path);
   return Error{read.error().kind, read.error().message + "; or give the path of a JSON file"};
 }
 

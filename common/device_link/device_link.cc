@@ -48,12 +48,14 @@ class DeviceLink::Implementation : public std::enable_shared_from_this<Implement
   }
 
   bool open() const { return connection_ != nullptr; }
+  bool was_open() const { return was_open_; }
   std::uint64_t sent() const { return sent_; }
   std::uint64_t dropped() const { return dropped_; }
 
  private:
   void Open(transport::Socket socket) {
     waits_for_.clear();
+    was_open_ = true;
     transport::FramedLimits limits;
     limits.max_in_bytes = limits.max_out_bytes = kMaxEnvelopeBytes;
     limits.max_queued_frames = options_.max_queued_frames;
@@ -99,7 +101,7 @@ class DeviceLink::Implementation : public std::enable_shared_from_this<Implement
   std::unique_ptr<transport::FramedConnection> connection_;
   std::string waits_for_;
   std::uint64_t sent_ = 0, dropped_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, was_open_ = false;
 };
 
 DeviceLink::DeviceLink(boost::asio::io_context& io, Options options)
@@ -115,7 +117,13 @@ bool DeviceLink::Send(const stream::HandFrame& frame) {
 }
 void DeviceLink::Stop(const std::string& reason) { implementation_->Stop(reason); }
 bool DeviceLink::open() const { return implementation_->open(); }
+bool DeviceLink::was_open() const { return implementation_->was_open(); }
 std::uint64_t DeviceLink::sent() const { return implementation_->sent(); }
 std::uint64_t DeviceLink::dropped() const { return implementation_->dropped(); }
+
+Error NoFootingd(const transport::Address& to) {
+  return NoDevice("no footingd listened for devices on " + to.Text() +
+                  "; start it with: footingd --source stream:" + to.Text());
+}
 
 }  // namespace footing::device_link

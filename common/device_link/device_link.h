@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "common/result/result.h"
 #include "common/stream/hands.h"
 #include "common/transport/address.h"
 #include "footing/v1/device.pb.h"
@@ -42,6 +43,7 @@ class DeviceLink {
   void Stop(const std::string& reason);
 
   bool open() const;
+  bool was_open() const;  ///< Whether footingd has listened there at any time.
   std::uint64_t sent() const;
   std::uint64_t dropped() const;
 
@@ -49,5 +51,8 @@ class DeviceLink {
   class Implementation;
   std::shared_ptr<Implementation> implementation_;
 };
+
+/// The error of a program that has waited for footingd at `to` for as long as it was to run.
+Error NoFootingd(const transport::Address& to);
 
 }  // namespace footing::device_link

@@ -61,15 +61,16 @@ Result<void> CheckSubject(const Subject& subject, const std::string& origin) {
 
 Result<Subject> ReadSubject(const std::string& path) {
   Subject subject;
-  config::Binder binder;
+  config::Binder binder("subject file");
   binder.Text("code", subject.code, "The subject's code");
   binder.Number("height_m", subject.height_m, kLeastHeightM, kMostHeightM, "Standing height");
   binder.Number("mass_kg", subject.mass_kg, kLeastMassKg, kMostMassKg, "Checked by the T-pose");
   binder.Number("foot_length_m", subject.foot_length_m, kLeastFootM, kMostFootM, "Heel to tip");
   const auto text = config::ReadTextFile(path);
   if (!text) return text.error();
-  if (const auto read = binder.ApplyText(*text, path); !read) return read.error();
-  if (const auto ok = CheckSubject(subject, path); !ok) return ok.error();
+  if (const auto read = binder.ApplyText(*text, path); !read)
+    return InvalidData(read.error().message);
+  if (const auto ok = CheckSubject(subject, path); !ok) return InvalidData(ok.error().message);
   return subject;
 }
 

@@ -49,6 +49,8 @@ def wrong_starts(stage):
            "--listen", f"unix:{stage.folder}/unused.sock")
     expect(stage, INVALID, f"{config}: not JSON", "footing-sim", "--track", config, "--listen",
            f"unix:{stage.folder}/unused.sock")
+    expect(stage, INVALID, "is not JSON", "footing-sim", "--engine", "pose", "--subject", config, "--listen",
+           f"unix:{stage.folder}/unused.sock")
     expect(stage, INVALID, f"{config}, in place of wrist_mapping.json", "footing-sim", "--set",
            f"mapping_table={config}", "--listen", f"unix:{stage.folder}/unused.sock")
 
@@ -70,6 +72,10 @@ def wrong_words(stage):
     expect(stage, USAGE, "--token-file", "footing-relay", "serve", *broker, "--listen", "tls:127.0.0.1:7460")
     expect(stage, USAGE, "unknown --channel nonsense; there are: status, motion", "footing-relay", "publish", *broker,
            "--channel", "nonsense")
+    expect(stage, USAGE, "does not apply to --mode paper", "footing-eval", "momentum", "--motion", "clip.bvh", "--mode",
+           "paper", "--lag-ms", 100)
+    expect(stage, USAGE, "--test t: must be one of dunnett, ", "footing-eval", "stats", "--test", "t", "--data", "a.csv")
+    expect(stage, USAGE, "--trials -1: must be from 1 to ", "footing-eval", "monkey", "--trials", -1)
     expect(stage, USAGE, "not a broker's address", "footing-relay", "publish", "--nats", "nonsense")
 
 
@@ -102,8 +108,14 @@ def no_server(stage):
     expect(stage, NO_DEVICE, waits, "footing-relay", "publish", "--connect", nobody, "--nats", broker, "--seconds", 1)
     expect(stage, FAILURE, "connection refused", "footing-relay", "serve", "--nats", broker, "--listen",
            f"unix:{stage.folder}/edge.sock", "--seconds", 1)
-    expect(stage, NO_DEVICE, f"footingd --source stream:{nobody}", "footing-stream", "user", "--script", "walk", "--to",
-           nobody, "--seconds", 1)
+    starts_it = f"footingd --source stream:{nobody}"
+    expect(stage, NO_DEVICE, starts_it, "footing-stream", "user", "--script", "walk", "--to", nobody, "--seconds", 1)
+    expect(stage, NO_DEVICE, starts_it, "footing-skeleton", "--listen", "127.0.0.1:0", "--to", nobody, "--seconds", 1)
+    assert stage.run("footing-skeleton", "--listen", "127.0.0.1:0", "--no-publish", "--seconds", 1).returncode == 0
+    frames = stage.folder / "frames"
+    stage.run_json("footing-eval", "spheres", "--distance-m", "1.5", "--frames", 1, "--out", frames)
+    expect(stage, NO_DEVICE, starts_it, "footing-camera", "--camera", frames / "camera.json", "--frames", frames,
+           "--repeat", "--to", nobody, "--sensor", nobody, "--preview", "none", "--seconds", 1)
 
 
 def garbage(address):

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "clients/skeleton/service/statistics.h"
@@ -50,7 +51,7 @@ class Receiver {
                       }});
   }
 
-  Result<nlohmann::ordered_json> Run() {
+  Result<Reception> Run() {
     boost::system::error_code error;
     socket_.open(options_.listen.protocol(), error);
     if (!error) socket_.bind(options_.listen, error);
@@ -74,7 +75,9 @@ class Receiver {
     if (options_.seconds > 0) {
       end_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(options_.seconds)));
       end_.async_wait([this](const boost::system::error_code& failed) {
-        if (!failed) End();
+        if (failed) return;
+        if (link_ && !link_->was_open()) published_ = device_link::NoFootingd(*options_.to);
+        End();
       });
     }
     ReceiveLater();
@@ -88,7 +91,7 @@ class Receiver {
     cost.dropped_hand_frames = link_ ? link_->dropped() : 0;
     auto json = ToJson(tracker_, cost);
     if (web_) json["web"] = ToJson(web_->counts());
-    return json;
+    return Reception{std::move(json), std::move(published_)};
   }
 
  private:
@@ -194,12 +197,13 @@ class Receiver {
                                  std::max(1.0, 0.1 * options_.most_packets_per_s)};
   std::int64_t dropped_line_ns_ = 0;
   std::uint64_t dropped_ = 0;
+  Result<void> published_;
   std::int64_t began_ns_ = 0, ended_ns_ = 0, began_cpu_ns_ = 0, ended_cpu_ns_ = 0;
 };
 
 }  // namespace
 
-Result<nlohmann::ordered_json> RunReceiver(const ReceiverOptions& options) {
+Result<Reception> RunReceiver(const ReceiverOptions& options) {
   return std::make_unique<Receiver>(options)->Run();
 }
 

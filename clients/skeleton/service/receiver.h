@@ -21,8 +21,12 @@ struct ReceiverOptions {
   double most_packets_per_s = 50'000;     ///< More are dropped unread.
 };
 
-/// Receives until its end and returns the statistics that --json prints: see docs/skeleton.md.
-/// Failure when it cannot listen.
-Result<nlohmann::ordered_json> RunReceiver(const ReceiverOptions& options);
+struct Reception {
+  nlohmann::ordered_json statistics;  ///< What --json prints: see docs/skeleton.md.
+  Result<void> published;             ///< No device: footingd was not there for all of `seconds`.
+};
+
+/// Receives until its end. Failure when it cannot listen.
+Result<Reception> RunReceiver(const ReceiverOptions& options);
 
 }  // namespace footing::skeleton

@@ -39,7 +39,7 @@ class Parser {
       if (!done) return done.error();
       while (line_ && text::Trim(*line_)[0] != ':') Advance();  // :documentation and the like.
     }
-    if (!any || out_.bones.empty()) return Fault("no ASF file: it has no :bonedata");
+    if (!any || out_.bones.empty()) return Fault("not an ASF file: no :bonedata");
     return std::move(out_);
   }
 

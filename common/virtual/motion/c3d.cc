@@ -201,7 +201,7 @@ Result<void> ReadFrames(const C3dReader& reader, const Layout& layout, double un
 Result<C3d> ParseC3d(std::span<const std::uint8_t> bytes, const std::string& file) {
   const auto fault = [&file](const std::string& what) { return InvalidData(file + ": " + what); };
   if (bytes.size() < 2 * kC3dBlock || bytes[1] != kC3dMark || bytes[0] < 2) {
-    return fault("no C3D file: expected a header of 512 bytes with 0x50 as its second byte");
+    return fault("not a C3D file: expected a header of 512 bytes with 0x50 as its second byte");
   }
   const std::size_t section = (std::size_t{bytes[0]} - 1) * kC3dBlock;
   if (section + 4 > bytes.size()) return fault("the parameters lie beyond the end of the file");

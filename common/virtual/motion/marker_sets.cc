@@ -164,13 +164,13 @@ std::string NoKnownSet(const MarkerTracks& tracks, const std::string& names) {
     const std::string missing = Missing(tracks, set, found);
     if (found <= most) continue;
     most = found;
-    nearest = std::string(set.name) + " also needs " + missing;
+    nearest = std::string(set.name) + ", the nearest, also needs " + missing;
   }
   std::string markers;
   for (const std::string& name : tracks.names) markers += (markers.empty() ? "" : ", ") + name;
-  return "the markers are of no set known (" + names + "); there are " +
-         std::to_string(tracks.names.size()) + " markers: " + markers + "; the nearest set, " +
-         nearest + "; rename them, or add a set to the table (docs/body.md, From markers)";
+  return "the markers match no known set (" + names + "): " + nearest +
+         "; rename them, or add a set to the table (docs/body.md, From markers); the file has " +
+         std::to_string(tracks.names.size()) + " markers: " + markers;
 }
 
 }  // namespace
@@ -213,8 +213,8 @@ Result<MarkerSet> FindMarkerSet(const MarkerTracks& tracks, std::string_view nam
     const std::string missing = Missing(tracks, set, found);
     if (set.name == name && missing.empty()) return set;
     if (set.name == name) {
-      return InvalidData("the markers are not of set " + std::string(name) + ": it needs " +
-                         missing);
+      return InvalidData("the markers do not match set " + std::string(name) +
+                         ", which also needs " + missing);
     }
     if (missing.empty() && found > most) {
       best = &set;

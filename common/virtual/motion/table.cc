@@ -48,7 +48,7 @@ Result<Announced> ParseHead(text::Lines& lines, Table& table) {
     }
     if (text::EqualsIgnoringCase(ValueOf(*line, "inDegrees"), "yes")) table.in_degrees = true;
   }
-  return lines.Fault("no MOT or STO file: expected 'endheader'");
+  return lines.Fault("not a MOT or STO file: expected 'endheader'");
 }
 
 }  // namespace

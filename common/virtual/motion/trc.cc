@@ -33,7 +33,7 @@ struct Head {
 Result<Head> ParseHead(text::Lines& lines) {
   auto line = lines.Next();
   if (!line || text::Trim(*line).substr(0, 12) != "PathFileType") {
-    return lines.Fault("no TRC file: expected PathFileType");
+    return lines.Fault("not a TRC file: expected PathFileType");
   }
   line = lines.Next();
   const auto keys = FullFields(line.value_or(""));

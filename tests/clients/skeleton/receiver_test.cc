@@ -45,7 +45,7 @@ void WaitForListener(std::uint16_t port) {
 
 struct Exchange {
   Result<nlohmann::ordered_json> sent = Failure("not run");
-  Result<nlohmann::ordered_json> received = Failure("not run");
+  Result<Reception> received = Failure("not run");
 };
 
 constexpr int kRunsS = 3;
@@ -70,10 +70,10 @@ TEST(Receiver, CountsWhatASenderSends) {
   ASSERT_TRUE(sent);
   ASSERT_TRUE(received) << received.error().message;
   EXPECT_EQ((*sent)["packets"], 50);
-  EXPECT_EQ((*received)["packets"], 50);
-  EXPECT_EQ((*received)["skeletons"], 50);
-  EXPECT_EQ((*received)["people"][0]["joints"], 50 * kJoints);
-  EXPECT_EQ((*received)["people"][0]["dialect"], "footing");
+  EXPECT_EQ(received->statistics["packets"], 50);
+  EXPECT_EQ(received->statistics["skeletons"], 50);
+  EXPECT_EQ(received->statistics["people"][0]["joints"], 50 * kJoints);
+  EXPECT_EQ(received->statistics["people"][0]["dialect"], "footing");
 }
 
 TEST(Receiver, DropsMorePacketsThanItIsAllowed) {
@@ -82,10 +82,27 @@ TEST(Receiver, DropsMorePacketsThanItIsAllowed) {
   const auto [sent, received] = SendToReceiver(options, 100, 1000);
   ASSERT_TRUE(sent);
   ASSERT_TRUE(received);
-  const int taken = (*received)["packets"], dropped = (*received)["dropped_packets"];
+  const int taken = received->statistics["packets"],
+            dropped = received->statistics["dropped_packets"];
   EXPECT_EQ(taken + dropped, 100);
   EXPECT_LE(taken, 5 + 50 * kRunsS + 1);  // A bucket of 5, and 50 a second.
   EXPECT_GT(dropped, 0);  // Sent within 0.1 s, or a second on a machine that stalls.
+}
+
+TEST(Receiver, SaysWhenFootingdNeverCame) {
+  ReceiverOptions options;
+  options.listen = FreePort();
+  options.to = transport::ParseAddress("unix:/nonexistent/devices.sock").value();
+  options.seconds = 0.5;
+  const auto received = RunReceiver(options);
+  ASSERT_TRUE(received) << received.error().message;
+  EXPECT_EQ(received->statistics["packets"], 0);
+  ASSERT_FALSE(received->published);
+  EXPECT_EQ(received->published.error().kind, ErrorKind::kNoDevice);
+  EXPECT_NE(received->published.error().message.find("unix:/nonexistent/devices.sock"),
+            std::string::npos);
+  options.to.reset();  // Nothing is to be published.
+  EXPECT_TRUE(RunReceiver(options)->published);
 }
 
 TEST(Receiver, SaysWhenItsPortIsTaken) {

@@ -18,6 +18,7 @@ struct Options {
   int trials = 3;
   double rate_hz = 50;
   double seconds = 0;
+  std::string gait = "walk";
   std::vector<std::string> listen;
 };
 
@@ -27,6 +28,7 @@ struct Program {
     CLI::App* run = app->add_subcommand("run", "Run the trials");
     run->add_option("--trials", options.trials, "Number of trials");
     run->add_option("--rate-hz", options.rate_hz, "Rate, Hz")->check(CLI::Range(0.25, 100.0));
+    run->add_option("--gait", options.gait, "Gait")->check(CLI::IsMember({"walk", "run"}));
     run->add_option("--seconds", options.seconds, "Duration, s (default: until SIGINT)");
     run->add_option("--listen", options.listen, "Address; may be repeated");
     app->add_subcommand("list", "List the trials");
@@ -96,7 +98,22 @@ TEST(Parse, WritesARangeWithoutTrailingZeros) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(ExitCode(program, {"run", "--rate-hz", "200.5"}), 2);
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              HasSubstr("Value 200.5 not in range 0.25 to 100;"));
+              HasSubstr("--rate-hz 200.5: must be from 0.25 to 100;"));
+}
+
+TEST(Parse, ListsTheValuesThatAnOptionTakes) {
+  Program program;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ExitCode(program, {"run", "--gait", "fly"}), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "error: --gait fly: must be one of walk, run; run footing-test run --help\n");
+}
+
+TEST(Parse, ListsTheSubcommandsWhenAnOptionIsGivenWithoutOne) {
+  Program program;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ExitCode(program, {"--of", "nothing"}), 2);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("there are: run list"));
 }
 
 TEST(Parse, ReportsAValueThatIsNotANumberInOneLine) {

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/config/data_file.h"
 #include "common/config/lines_of_keys.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::config {
 namespace {
@@ -141,6 +144,20 @@ TEST(DataFile, AnUnknownNameListsTheBuiltInOnes) {
       HasSubstr(
           "there are: 1, 2, 3, 4, build, corners, curves, endless, hills, pits, plain, straight"));
   EXPECT_TRUE(ReadNamedOrPath("straight", "tracks"));
+}
+
+TEST(DataFile, AFileOfAnyEndingIsReadUnlessItsNameIsBuiltIn) {
+  const test::TemporaryFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.Path("."));
+  for (const char* const name : {"track.txt", "straight"}) std::ofstream(name) << "hello";
+  const auto named = ReadNamedOrPath("track.txt", "tracks");
+  const auto built_in = ReadNamedOrPath("straight", "tracks");
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(named) << named.error().message;
+  EXPECT_EQ(*named, "hello");
+  ASSERT_TRUE(built_in) << built_in.error().message;
+  EXPECT_NE(*built_in, "hello");
 }
 
 TEST(Config, EachValueKnowsWhereItComesFrom) {

@@ -45,6 +45,16 @@ TEST_F(SubjectFileTest, CentimetresPoundsAndUnknownKeysAreRefusedByName) {
   EXPECT_THAT(Read(R"({"code": "../etc", "height_m": 1.8})").error().message, HasSubstr("letters"));
 }
 
+TEST_F(SubjectFileTest, AWrongFileIsInvalidDataAndErrorsListTheKeys) {
+  for (const char* const wrong : {"height", "[]", R"({"code": "a", "height_m": 181})",
+                                  R"({"code": "../etc", "height_m": 1.8})"})
+    EXPECT_EQ(Read(wrong).error().kind, ErrorKind::kInvalidData) << wrong;
+  const auto unknown = Read(R"({"code": "a", "height_m": 1.8, "shoe": 43})");
+  EXPECT_THAT(unknown.error().message, HasSubstr("subject file: unknown key \"shoe\" in "));
+  EXPECT_THAT(unknown.error().message,
+              HasSubstr("there are: code, height_m, mass_kg, foot_length_m"));
+}
+
 TEST(Subject, NumbersThatAreNoneAreRefused) {
   EXPECT_FALSE(CheckSubject({"a", std::nan(""), 0, 0}, "here").ok());
   EXPECT_FALSE(CheckSubject({"a", 1.8, std::nan(""), 0}, "here").ok());

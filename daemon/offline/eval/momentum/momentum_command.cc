@@ -31,7 +31,10 @@ Result<CalibratedStart> Calibrate(const MomentumScene& scene, const std::string&
     if (!calibration.Advance(scene.frames[i].loads, 1 / scene.rate_hz)) continue;
     return CalibratedStart{calibration.result(), i + 1};
   }
-  return InvalidData(motion + ": its T-pose never stood still on both boards");
+  return InvalidData(motion +
+                     ": no T-pose could be taken: the body never stands still with both feet on "
+                     "the boards before the motion; use a clip that begins in place, or "
+                     "--unlimited");
 }
 
 momentum::BestConfig BestConfigOf(const MomentumOptions& options) {
@@ -126,7 +129,8 @@ void AddMomentumCommand(CLI::App& app, Shared& shared) {
     flags->options.lag_s = flags->lag_ms / 1000;
     flags->options.paper = flags->mode == "paper";
     if (flags->options.paper && flags->lag_ms > 0) {
-      shared.exit_code = cli::Report(UsageError("--lag-ms is the best mode's: paper has no lag"));
+      shared.exit_code =
+          cli::Report(UsageError("--lag-ms does not apply to --mode paper, which has no lag"));
       return;
     }
     shared.exit_code = PrintResult(Evaluate(flags->options, flags->offline), shared.json);

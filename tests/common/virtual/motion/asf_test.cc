@@ -146,7 +146,7 @@ TEST(Asf, ErrorsSayFileLineAndWhatWasExpected) {
   const struct {
     std::string text, message;
   } kRows[] = {
-      {"", "no ASF file"},
+      {"", "not an ASF file"},
       {With(kAsf, "length 8", "length x"), "leg.asf, line 27: expected a number of length"},
       {With(kAsf, "dof rx ry", "dof rx l"), "slide or stretch"},
       {With(kAsf, "dof rx ry", "dof rx rx"), "stands twice"},

@@ -239,7 +239,7 @@ TEST(C3d, MoreFramesAndNamesThanAWordAndAListHoldAreWritten) {
 TEST(C3d, ErrorsSayWhatWasExpected) {
   Bytes file = Example(Processor::kIntel, true);
   file[1] = 0;
-  EXPECT_THAT(ParseC3d(file, "x.c3d").error().message, HasSubstr("x.c3d: no C3D file"));
+  EXPECT_THAT(ParseC3d(file, "x.c3d").error().message, HasSubstr("x.c3d: not a C3D file"));
   file = Example(Processor::kIntel, true);
   file[515] = 7;
   EXPECT_THAT(ParseC3d(file, "x.c3d").error().message, HasSubstr("expected processor 84"));

@@ -156,7 +156,7 @@ TEST(MarkerSets, AnUnknownSetIsListedWithWhatTheNearestOneNeeds) {
   const auto set = FindMarkerSet(made.tracks);
   ASSERT_FALSE(set.ok());
   const std::string& said = set.error().message;
-  for (const char* part : {"other_L_ankle", "opencap also needs", "docs/body.md"}) {
+  for (const char* part : {"other_L_ankle", "opencap, the nearest, also needs", "docs/body.md"}) {
     EXPECT_NE(said.find(part), std::string::npos) << said;
   }
 }
@@ -202,12 +202,13 @@ TEST(MarkerFit, AMarkerThatIsHiddenForAWhileHardlyMatters) {
 TEST(MarkerFit, ErrorsSayWhatIsMissing) {
   Made made;
   EXPECT_THAT(FitMarkers(made.tracks, {.set = "plug-in-gait"}).error().message,
-              HasSubstr("it needs @ASI (left)"));
+              HasSubstr("which also needs @ASI (left)"));
   EXPECT_THAT(FitMarkers(made.tracks, {.set = "mine"}).error().message,
               HasSubstr("there are opencap, plug-in-gait"));
   MarkerTracks unknown = made.tracks;
   for (std::string& name : unknown.names) name = "M" + name;
-  EXPECT_THAT(FitMarkers(unknown).error().message, HasSubstr("of no set known"));
+  EXPECT_THAT(FitMarkers(unknown).error().message, HasSubstr("match no known set (opencap, "));
+  EXPECT_THAT(FitMarkers(unknown).error().message, HasSubstr(", the nearest, also needs "));
   MarkerTracks far = made.tracks;
   for (auto& track : far.p) track *= 1000;
   EXPECT_THAT(FitMarkers(far).error().message, HasSubstr("make a person of"));

@@ -59,7 +59,7 @@ TEST(Trc, ErrorsSayFileLineAndWhatWasExpected) {
   const struct {
     std::string text, message;
   } kRows[] = {
-      {"", "no TRC file"},
+      {"", "not a TRC file"},
       {TrcWith(kTrc, "\tmm\n", "\tinch\n"), "x.trc, line 3: expected Units"},
       {TrcWith(kTrc, "100\t100", "0\t100"), "expected DataRate"},
       {TrcWith(kTrc, "1501", "15o1"), "line 8: marker C7: expected a number, found '15o1'"},
