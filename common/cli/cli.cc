@@ -86,8 +86,9 @@ std::string WrongValue(const std::string& text) {
   static const std::regex kRange("(.*): Value (.*) not in range (.*)");
   static const std::regex kMember(R"((.*): (.*) not in \{(.*)\})");
   std::smatch parts;
-  if (std::regex_match(text, parts, kRange))
+  if (std::regex_match(text, parts, kRange)) {
     return parts[1].str() + " " + parts[2].str() + ": must be from " + parts[3].str();
+  }
   if (!std::regex_match(text, parts, kMember)) return text;
   return parts[1].str() + " " + parts[2].str() + ": must be one of " +
          std::regex_replace(parts[3].str(), std::regex(","), ", ");
