@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/text/number.h"
+#include "common/units/instant.h"
 
 namespace footing::playback {
 namespace {
@@ -13,12 +14,12 @@ std::string TextOf(const mcap::TextMap& values, const std::string& key) {
   return found == values.end() ? "" : found->second;
 }
 
-/// A whole number within kMostNs; nothing where there is none.
+/// A whole number within kMostInstantNs; nothing where there is none.
 std::optional<std::int64_t> WholeOf(const mcap::TextMap& values, const std::string& key) {
   const std::string word = TextOf(values, key);
   const bool negative = !word.empty() && word[0] == '-';
   const auto count = text::ToCount(std::string_view(word).substr(negative ? 1 : 0));
-  if (!count || *count > static_cast<std::size_t>(kMostNs)) return std::nullopt;
+  if (!count || *count > static_cast<std::size_t>(kMostInstantNs)) return std::nullopt;
   return (negative ? -1 : 1) * static_cast<std::int64_t>(*count);
 }
 

@@ -10,11 +10,6 @@
 
 namespace footing::playback {
 
-/// Instants and offsets beyond it, 73 years either way, are refused: sums of three of them cannot
-/// overflow.
-inline constexpr std::int64_t kMostNs = std::int64_t{1} << 61;
-inline bool IsInstant(std::int64_t time_ns) { return time_ns >= -kMostNs && time_ns <= kMostNs; }
-
 /// Sessions kept of one server: every tick is compared with each. Later ones are left out.
 inline constexpr std::size_t kMostSessions = 10'000;
 

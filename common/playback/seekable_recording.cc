@@ -8,6 +8,7 @@
 
 #include "common/mcap/decode.h"
 #include "common/mcap/seek.h"
+#include "common/units/instant.h"
 
 namespace footing::playback {
 namespace {
@@ -22,8 +23,6 @@ constexpr std::uint64_t kMostMetadataBytes = 64ull << 20;
 constexpr std::size_t kMostMessageBytes = std::size_t{64} << 20;
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-
-bool IsInstant(std::uint64_t time_ns) { return time_ns <= static_cast<std::uint64_t>(kMostNs); }
 
 /// Parses the message into its field of the tick; false when it makes no sense.
 bool Parse(std::uint32_t field, std::string_view bytes, v1::Tick& tick) {

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "common/units/instant.h"
+
 namespace footing::playback {
 namespace {
 
 namespace pb = google::protobuf;
 
-bool IsInstant(const pb::FieldDescriptor& field) {
+bool IsStamp(const pb::FieldDescriptor& field) {
   const std::string& name = field.name();
   return field.cpp_type() == pb::FieldDescriptor::CPPTYPE_INT64 && !field.is_repeated() &&
          name.ends_with("_ns") && name != "age_ns" && name != "true_ns" && name != "wall_time_ns";
@@ -23,8 +25,9 @@ void ShiftStamps(pb::Message& message, std::int64_t shift_ns) {
   std::vector<const pb::FieldDescriptor*> present;
   fields.ListFields(message, &present);  // Fields of value zero are not among them.
   for (const pb::FieldDescriptor* field : present) {
-    if (IsInstant(*field)) {
-      fields.SetInt64(&message, field, fields.GetInt64(message, field) + shift_ns);
+    if (IsStamp(*field)) {
+      const std::int64_t stamp_ns = fields.GetInt64(message, field);
+      if (IsInstant(stamp_ns)) fields.SetInt64(&message, field, stamp_ns + shift_ns);
     } else if (field->message_type() == nullptr) {
       continue;
     } else if (field->is_repeated()) {

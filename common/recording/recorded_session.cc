@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "common/mcap/walk.h"
+#include "common/transport/tick_rate.h"
+#include "common/units/instant.h"
 
 namespace footing::recording {
 namespace {
@@ -56,7 +59,9 @@ class TickCollector {
     server.server_id = TextOf(values, "server_id");
     server.version = TextOf(values, "server_version");
     server.epoch = epoch;
-    ReadNumber(values, "tick_rate_hz", server.tick_rate_hz);
+    double rate_hz = 0;
+    ReadNumber(values, "tick_rate_hz", rate_hz);
+    if (transport::IsTickRate(rate_hz)) server.tick_rate_hz = rate_hz;
     ReadNumber(values, "server_host_ns", server.host_ns);
     ReadNumber(values, "server_wall_time_ns", server.wall_time_ns);
   }
@@ -64,6 +69,10 @@ class TickCollector {
   void OnMessage(const mcap::Message& message) {
     const Topic& topic = topics_[message.channel_id];
     if (topic.field == 0) return;
+    if (!IsInstant(message.log_time_ns)) {
+      no_instant_ns_ = message.log_time_ns;
+      return;
+    }
     const std::size_t server = Latest(topic.server);
     RecordedTick& tick = ticks_[server][message.sequence];
     const auto host_ns = static_cast<std::int64_t>(message.log_time_ns);
@@ -80,10 +89,15 @@ class TickCollector {
     tick.channels.push_back({topic.field, message.data});
   }
 
-  void Finish() {
+  Result<void> Finish() {
+    if (no_instant_ns_) {
+      return InvalidData("a message has the time " + std::to_string(*no_instant_ns_) +
+                         " ns, to which no clock of a host comes");
+    }
     for (auto& [server, ticks] : ticks_) {
       for (auto& [sequence, tick] : ticks) servers_[server].ticks.push_back(std::move(tick));
     }
+    return {};
   }
 
  private:
@@ -114,6 +128,7 @@ class TickCollector {
   std::map<std::uint16_t, Topic> topics_;
   std::map<std::string, std::size_t> latest_;
   std::map<std::size_t, std::map<std::uint32_t, RecordedTick>> ticks_;
+  std::optional<std::uint64_t> no_instant_ns_;  ///< Of a message.
 };
 
 }  // namespace
@@ -135,7 +150,9 @@ Result<RecordedSession> RecordedSession::Open(const std::string& path) {
     return InvalidData(path + ": " + end.problem + " (byte " + std::to_string(end.problem_offset) +
                        "); repair it with: footing-log repair " + path + " --out FILE");
   }
-  collector.Finish();
+  if (const auto finished = collector.Finish(); !finished) {
+    return InvalidData(path + ": " + finished.error().message);
+  }
   return session;
 }
 

@@ -30,6 +30,7 @@ BLOCKS = 12  # Of which each gives one mean: neighbouring samples say the same.
 MOST_GROWTH_BYTES = 1 << 20
 SILENT_S = 15  # A viewer without a tick for so long, its link being whole, is lost.
 REPORTS = ("ERROR: AddressSanitizer", "WARNING: ThreadSanitizer", "ERROR: LeakSanitizer", "runtime error:")
+REPORT_LINES = 60
 # Of Student's distribution with BLOCKS - 2 degrees of freedom, 97.5 %.
 STUDENT = 2.228
 
@@ -162,6 +163,13 @@ def soak(stage, options):
     return samples, descriptors, viewers, devices
 
 
+def first_report(log):
+    """Of a sanitizer, with the lines that follow: the log is gone once the programs have ended."""
+    lines = log.read_text(errors="replace").splitlines()
+    at = next((i for i, line in enumerate(lines) if any(report in line for report in REPORTS)), None)
+    return [] if at is None else ["\n".join([f"{log.name}: {lines[at]}", *lines[at + 1:at + REPORT_LINES]])]
+
+
 def judge(stage, options, samples, descriptors, viewers, devices):
     results = {"seconds": options.seconds, "viewers": options.viewers, "connections": viewers.connections,
                "megabytes": viewers.bytes / 1e6, "devices": len(devices["devices"])}
@@ -180,9 +188,7 @@ def judge(stage, options, samples, descriptors, viewers, devices):
         code = stage.stop(name, timeout_s=30)
         if name in samples and code != 0:
             problems.append(f"{name} ended with {code}")
-    for log in stage.folder.glob("*.log"):
-        text = log.read_text(errors="replace")
-        problems += [f"{log.name}: {report}" for report in REPORTS if report in text]
+    problems += [report for log in sorted(stage.folder.glob("*.log")) for report in first_report(log)]
     return results, problems
 
 

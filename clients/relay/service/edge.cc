@@ -11,6 +11,7 @@
 #include "common/log/fields.h"
 #include "common/log/log.h"
 #include "common/transport/channels_of.h"
+#include "common/transport/tick_rate.h"
 #include "common/units/units.h"
 
 namespace footing::relay {
@@ -19,7 +20,6 @@ namespace {
 constexpr auto kPulse = std::chrono::milliseconds(250);
 constexpr double kAskAgainS = 0.9;
 constexpr double kPingViewersS = 3;
-constexpr double kMostTickRateHz = 10'000;
 
 std::string NewInbox() {
   std::random_device random;
@@ -133,6 +133,7 @@ void Edge::OnTick(const v1::Tick& tick) {
 
 void Edge::OnSnapshot(const v1::Tick& tick) {
   if (welcome_.epoch() == 0 || tick.epoch() != welcome_.epoch()) return;
+  if (!IsSound({tick.sequence(), tick.host_ns()})) return;
   if (!server_ || server_->epoch() != tick.epoch()) {
     if (server_) End(options_.server + " was started again");
     return Begin(tick);
@@ -146,8 +147,7 @@ transport::ServerOptions Edge::OptionsOf(const v1::Welcome& welcome) const {
   constexpr std::size_t kLongestVersion = 64;
   options.version = welcome.version().substr(0, kLongestVersion) + " relayed";
   options.channels = ChannelsNamed(welcome.channels());
-  const double source_hz = welcome.limits().tick_rate_hz();
-  if (source_hz > 0 && source_hz <= kMostTickRateHz) options.tick_rate_hz = source_hz;
+  options.tick_rate_hz = transport::TickRateOf(welcome, options.tick_rate_hz);
   if (options_.rate_hz > 0) options.tick_rate_hz = std::min(options.tick_rate_hz, options_.rate_hz);
   options.epoch = welcome.epoch();
   options.sessions = options_.sessions;
@@ -162,14 +162,13 @@ void Edge::Begin(const v1::Tick& snapshot) {
   if (const auto applied = options_.access.Apply(options); !applied) {
     return on_broken_(applied.error());
   }
-  const double source_hz = welcome_.limits().tick_rate_hz();
   transport::ServerHandlers handlers;
   handlers.on_command = RefuseCommand;
   handlers.on_overload = [](const transport::OverloadLine& line) {
     log::Write(log::Level::kWarning, line.text, {"", line.session, line.channel});
   };
   server_ = std::make_unique<transport::Server>(io_, options, handlers);
-  thinner_.emplace(options_.rate_hz, source_hz > 0 ? source_hz : options.tick_rate_hz,
+  thinner_.emplace(options_.rate_hz, transport::TickRateOf(welcome_, options.tick_rate_hz),
                    snapshot.sequence());
   server_->BeginAt({snapshot.sequence(), snapshot.host_ns()}, transport::ChannelsOf(snapshot));
   heard_ns_ = clock::MonotonicNs();

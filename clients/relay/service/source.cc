@@ -9,6 +9,7 @@
 #include "clients/relay/service/channels.h"
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/transport/tick_rate.h"
 
 namespace footing::relay {
 namespace {
@@ -45,8 +46,7 @@ Source::Source(boost::asio::io_context& io, const transport::Address& address,
                [this](const v1::Notice& notice) { log::Warning(notice.text()); }}) {}
 
 double Source::tick_rate_hz() const {
-  const double rate_hz = welcome_.limits().tick_rate_hz();
-  return rate_hz > 0 ? rate_hz : transport::ServerOptions().tick_rate_hz;
+  return transport::TickRateOf(welcome_, transport::ServerOptions().tick_rate_hz);
 }
 
 std::optional<std::int64_t> Source::ServerNs() const {

@@ -3,9 +3,14 @@
 #include <utility>
 
 #include "clients/relay/service/channels.h"
+#include "common/units/instant.h"
 #include "common/units/time.h"
 
 namespace footing::relay {
+
+bool IsSound(const transport::TickNumber& number) {
+  return IsInstant(number.host_ns) && IsInstant(number.sequence);
+}
 
 Thinner::Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence)
     : rate_hz_(rate_hz),
@@ -14,7 +19,7 @@ Thinner::Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequenc
 
 std::optional<Thinner::Thinned> Thinner::Take(const transport::TickNumber& number,
                                               std::vector<transport::ChannelBytes> channels) {
-  if (number.sequence <= last_sequence_) return std::nullopt;
+  if (!IsSound(number) || number.sequence <= last_sequence_) return std::nullopt;
   Thinned thinned;
   thinned.number = number;
   const bool hole = number.sequence > last_sequence_ + 1;

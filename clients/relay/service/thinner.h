@@ -11,6 +11,10 @@
 
 namespace footing::relay {
 
+/// Whether it can be counted on from this number and time: what comes from a broker may be
+/// anything.
+bool IsSound(const transport::TickNumber& number);
+
 /// Takes the ticks of one epoch and gives those that viewers get: of each channel of samples or
 /// poses at most `rate_hz` a second, the newest; retained channels and events whole, at once.
 ///
@@ -28,7 +32,8 @@ class Thinner {
   /// `rate_hz` 0: every tick. `last_sequence` has been had already.
   Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence);
 
-  /// Nothing for a tick that is left out, or was had already. missing_from of `number` is ignored.
+  /// Nothing for a tick that is left out, was had already, or is not sound. missing_from of
+  /// `number` is ignored.
   std::optional<Thinned> Take(const transport::TickNumber& number,
                               std::vector<transport::ChannelBytes> channels);
 

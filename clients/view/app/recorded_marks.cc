@@ -6,6 +6,7 @@
 
 #include "clients/view/scene/trial_text.h"
 #include "common/playback/recorded_server.h"
+#include "common/units/instant.h"
 #include "common/units/units.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
@@ -50,7 +51,7 @@ class MarkCollector {
   }
 
   void OnEvent(const v1::Event& event, std::int64_t offset_ns) {
-    if (!playback::IsInstant(event.host_ns())) return;
+    if (!IsInstant(event.host_ns())) return;
     const double at_s = PositionOf(event.host_ns() - offset_ns);
     switch (event.kind()) {
       case v1::Event::KIND_TRIAL:

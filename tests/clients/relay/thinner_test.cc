@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 
 #include "clients/relay/service/channels.h"
@@ -108,6 +109,17 @@ TEST(Thinner, WhatWasHadAlreadyIsLeftOut) {
   EXPECT_FALSE(TakeAt(thinner, 10, {{kEvents, "e"}}));
   EXPECT_TRUE(TakeAt(thinner, 11, {{kEvents, "e"}}));
   EXPECT_FALSE(TakeAt(thinner, 11, {{kEvents, "e"}}));
+}
+
+TEST(Thinner, NumbersBehindWhichNothingCanComeAreLeftOut) {
+  Thinner thinner(30, 100, 0);
+  const auto last = std::numeric_limits<std::uint64_t>::max();
+  const auto end_ns = std::numeric_limits<std::int64_t>::max();
+  EXPECT_FALSE(thinner.Take({last, kTickNs}, {{kEvents, "e"}}));
+  EXPECT_FALSE(thinner.Take({1, end_ns}, {{kEvents, "e"}}));
+  EXPECT_FALSE(thinner.Take({1, -end_ns}, {{kEvents, "e"}}));
+  EXPECT_TRUE(TakeAt(thinner, 1, {{kMotion, "m"}}));
+  EXPECT_EQ(thinner.missing(), 0u);
 }
 
 TEST(Thinner, WithoutARateEveryTickComes) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/units/instant.h"
+
 namespace footing::playback {
 namespace {
 
@@ -20,11 +22,11 @@ TEST(RecordedServerTest, SessionsAreKeptUpToTheLimit) {
 
 TEST(RecordedServerTest, TimesBeyondTheLimitAreLeftOut) {
   RecordedServer server;
-  TakeSession(SessionOf(kMostNs + 1, 0), server);
+  TakeSession(SessionOf(kMostInstantNs + 1, 0), server);
   EXPECT_TRUE(server.welcomes.empty());
-  TakeSession(SessionOf(kMostNs, -kMostNs), server);
+  TakeSession(SessionOf(kMostInstantNs, -kMostInstantNs), server);
   EXPECT_EQ(server.offset_ns, 0);
-  TakeClock({{"valid", "true"}, {"server_minus_recorder_ns", std::to_string(-kMostNs - 1)}},
+  TakeClock({{"valid", "true"}, {"server_minus_recorder_ns", std::to_string(-kMostInstantNs - 1)}},
             server);
   EXPECT_FALSE(server.clock_measured);
 }

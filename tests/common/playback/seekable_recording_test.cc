@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "common/recording/recording_writer.h"
+#include "common/units/instant.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::playback {
@@ -225,11 +226,11 @@ TEST_F(SeekableRecordingTest, TimesThatCouldOverflowAreLeftOut) {
   for (std::uint32_t k = 0; k < 50; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
   // The chunk of such a message is left out.
   ASSERT_TRUE(writer_->Flush());
-  Frame(kMostNs + 1, 1000 * kMs, 50);
+  Frame(kMostInstantNs + 1, 1000 * kMs, 50);
   ASSERT_TRUE(writer_->Flush());
   Frame(-1, 1000 * kMs, 51);
   ASSERT_TRUE(writer_->Flush());
-  Frame(10'000 * kMs, kMostNs + 1, 52);
+  Frame(10'000 * kMs, kMostInstantNs + 1, 52);
   auto recording = Opened();
   ASSERT_TRUE(recording.ok());
   EXPECT_EQ(recording->first_ns(), 0);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "footing/v1/session.pb.h"
 
 namespace footing::playback {
@@ -33,6 +35,18 @@ TEST(ShiftStamps, MovesEveryInstantOfTheServersClockAndNothingElse) {
   EXPECT_EQ(moved.events().events(0).host_ns(), 0);  // Unknown stays unknown.
   ShiftStamps(moved, -1000);
   EXPECT_EQ(moved.SerializeAsString(), tick.SerializeAsString());
+}
+
+TEST(ShiftStamps, LeavesWhatNoClockComesTo) {
+  constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
+  v1::Tick tick;
+  tick.set_host_ns(kEnd);
+  tick.mutable_motion()->add_samples()->set_received_ns(-kEnd);
+  tick.mutable_motion()->mutable_samples(0)->set_sampled_ns(80);
+  ShiftStamps(tick, 1000);
+  EXPECT_EQ(tick.host_ns(), kEnd);
+  EXPECT_EQ(tick.motion().samples(0).received_ns(), -kEnd);
+  EXPECT_EQ(tick.motion().samples(0).sampled_ns(), 1080);
 }
 
 }  // namespace

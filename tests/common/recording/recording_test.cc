@@ -13,6 +13,7 @@
 #include "common/recording/recording_writer.h"
 #include "common/recording/repair.h"
 #include "common/recording/schema.h"
+#include "common/units/instant.h"
 #include "footing/v1/session.pb.h"
 #include "tests/common/temporary_folder.h"
 
@@ -176,6 +177,33 @@ TEST_F(Recording, ATextFileIsNoCaseForRepair) {
   EXPECT_EQ(session.error().kind, ErrorKind::kInvalidData);
   EXPECT_THAT(session.error().message, HasSubstr("notes.txt is not a recording"));
   EXPECT_THAT(session.error().message, Not(HasSubstr("repair")));
+}
+
+TEST_F(Recording, ARateThatNoServerHasIsTheUsualOne) {
+  const std::pair<const char*, double> rates[] = {{"50", 50},      {"0", 100},   {"-5", 100},
+                                                  {"1e-300", 100}, {"inf", 100}, {"nan", 100}};
+  for (const auto& [written, read] : rates) {
+    const std::string path = Path(std::string(written) + ".mcap");
+    auto writer = RecordingWriter::Create(path, {"test", false, {}});
+    ASSERT_TRUE(
+        writer->AddMetadata("session", {{"server", "footingd"}, {"tick_rate_hz", written}}).ok());
+    ASSERT_TRUE(writer->Finish().ok());
+    const auto session = RecordedSession::Open(path);
+    ASSERT_TRUE(session.ok());
+    EXPECT_EQ(session->servers()[0].tick_rate_hz, read) << written;
+  }
+}
+
+TEST_F(Recording, ATimeToWhichNoClockComesIsRefused) {
+  for (const std::int64_t time_ns : {kMostInstantNs + 1, std::int64_t{-1}}) {
+    auto writer = RecordingWriter::Create(Path("a.mcap"), {"test", true, {}});
+    ASSERT_TRUE(writer->Write("/footingd/motion", v1::MotionSamples(), {time_ns, 0, 1}).ok());
+    ASSERT_TRUE(writer->Finish().ok());
+    const auto session = RecordedSession::Open(Path("a.mcap"));
+    ASSERT_FALSE(session.ok());
+    EXPECT_EQ(session.error().kind, ErrorKind::kInvalidData);
+    EXPECT_THAT(session.error().message, HasSubstr("no clock of a host"));
+  }
 }
 
 TEST_F(Recording, SchemasThatMakeNoSenseAreRefused) {

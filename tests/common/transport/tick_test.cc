@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "common/transport/framing.h"
 #include "common/transport/publication.h"
+#include "common/transport/tick_rate.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::transport {
@@ -47,6 +49,18 @@ TEST(Tick, HandWrittenHeadAndSharedBytesAreWhatProtobufWrites) {
       EXPECT_EQ(std::string(bytes, size) + tick.bytes, Frame(expected.SerializeAsString()));
       EXPECT_EQ(TickPayloadBytes(head, tick.bytes.size()), expected.ByteSizeLong());
     }
+  }
+}
+
+TEST(TickRateOf, IsTheServersWhereItCanBe) {
+  v1::Welcome welcome;
+  EXPECT_EQ(TickRateOf(welcome, 100), 100);
+  welcome.mutable_limits()->set_tick_rate_hz(200);
+  EXPECT_EQ(TickRateOf(welcome, 100), 200);
+  const double infinite_hz = std::numeric_limits<double>::infinity();
+  for (const double rate_hz : {-1.0, 1e-300, 1e9, infinite_hz, std::nan("")}) {
+    welcome.mutable_limits()->set_tick_rate_hz(rate_hz);
+    EXPECT_EQ(TickRateOf(welcome, 100), 100) << rate_hz;
   }
 }
 
