@@ -46,8 +46,10 @@ constexpr double kTrunkTurnRad = DegreesToRadians(22);
 /// which is lifted less by this share.
 constexpr double kTrunkSwayRad = DegreesToRadians(3);
 constexpr double kLoadedLift = 0.25;
-/// To turn by the feet, one is lifted higher and the other lower by this share of an even step.
-/// Wider movements take longer, by this power of their width (Viviani & Flash 1995).
+/// To turn by the feet, one is lifted higher than the other: their difference over their sum. In an
+/// even step the hips move as fast as they do at ease already (kHipWay), so the higher foot goes on
+/// as before and the other one is lifted less. Wider movements take longer, by this power of their
+/// width (Viviani & Flash 1995).
 constexpr double kFeetTurn = 0.6;
 constexpr double kIsochrony = 0.25;
 constexpr double kHangingRad = DegreesToRadians(12), kBentRad = DegreesToRadians(85);
@@ -149,10 +151,13 @@ double LimbBody::PelvisRise() const {
   return rhythm_.activity() * std::lerp(step_m, hop_m, hop_.value);
 }
 
-/// Height of a leg's lift over that of an even step; not in a hop with both.
+/// Height of a leg's lift over that of an even step; in a hop both are lifted alike.
 double LimbBody::LiftedBy(bool left) const {
   const double steps = 1 - std::clamp(hop_.value, 0.0, 1.0);
-  if (turn_by_ == TurnSource::kFeet) return 1 + (left ? 1 : -1) * steps * turn_.value;
+  if (turn_by_ == TurnSource::kFeet) {
+    const double higher = (left ? 1 : -1) * steps * turn_.value;
+    return (1 + higher) / (1 + std::fabs(higher));
+  }
   if (turn_by_ != TurnSource::kTrunk) return 1;
   const double lower = (left ? -1 : 1) * turn_.value / kTrunkTurnRad;  // Right side down: right.
   return 1 - kLoadedLift * steps * std::clamp(lower, 0.0, 1.0);

@@ -27,6 +27,24 @@ std::optional<double> TurnRight(const Inputs& inputs, TurnSource turn_by) {
   return upper.roll_rad;
 }
 
+/// Feet that are lifted to different heights step alternately; a hop lifts both alike. The shins of
+/// uneven steps move along different paths, so their phase does not show which of the two it is;
+/// and the lower foot's shin moves mostly with the pelvis, so the other one shows the rhythm. Where
+/// that has no frequency, legs may have begun to move together, and nothing is replaced. `side`: 1
+/// where the left foot is the higher one, -1 the right one.
+LimbPair SteppingUnevenly(const LimbPair& legs, int side) {
+  const LimbFeatures& higher = side > 0 ? legs.left : legs.right;
+  if (!higher.frequency_valid) return legs;
+  LimbPair stepping = legs;
+  for (LimbFeatures* leg : {&stepping.left, &stepping.right}) {
+    leg->frequency_valid = true;
+    leg->frequency_hz = higher.frequency_hz;
+  }
+  stepping.phase_valid = true;
+  stepping.phase_rad = kPi;
+  return stepping;
+}
+
 std::uint32_t MissingRoles(const Inputs& inputs, TurnSource turn_by) {
   std::uint32_t missing = Missing(inputs.legs.left, DeviceRole::kLeftLeg) |
                           Missing(inputs.legs.right, DeviceRole::kRightLeg);
@@ -80,15 +98,17 @@ LegInterface::LegInterface(const LegMapping& mapping, const LegOptions& options)
 }
 
 biped::GaitCommand LegInterface::Advance(double time_s, const Inputs& inputs) {
-  const LimbPair& legs = inputs.legs;
+  const auto right = TurnRight(inputs, options_.turn_by);
+  const bool absent = !inputs.legs.left.present && !inputs.legs.right.present;
+  if (absent) turn_.Rest();
+  const double turn_per_step_rad = turn_.Advance(time_s, absent ? std::nullopt : right);
+  const bool uneven = options_.turn_by == TurnSource::kFeet && turn_.side() != 0;
+  const LimbPair legs = uneven ? SteppingUnevenly(inputs.legs, turn_.side()) : inputs.legs;
   const auto frequency_hz =
       MeanOf(legs, &LimbFeatures::frequency_valid, &LimbFeatures::frequency_hz);
   const bool run = frequency_hz && mapping_.border.IsRun(*frequency_hz, gait_.gait());
   biped::GaitCommand command = gait_.Advance(time_s, legs, run);
-  const auto right = TurnRight(inputs, options_.turn_by);
-  const bool absent = !legs.left.present && !legs.right.present;
-  if (absent) turn_.Rest();
-  command.turn_per_step_rad = turn_.Advance(time_s, absent ? std::nullopt : right);
+  command.turn_per_step_rad = turn_per_step_rad;
 
   state_ = {.interface = stream::UserInterface::kLeg,
             .border_hz = mapping_.border.border_hz,

@@ -39,6 +39,7 @@ struct LegOptions {
 /// | head or trunk inclined sideways | besides, 5 degrees a step towards the lower side        |
 /// | or one foot lifted higher       | besides, 5 degrees a step away from it: it is the outer |
 ///
+/// While the feet turn, the legs walk or run whatever their phase.
 /// A plain value.
 class LegInterface {
  public:

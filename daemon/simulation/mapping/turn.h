@@ -35,12 +35,14 @@ class Turn {
   void Rest();
 
   bool valid() const { return valid_; }
+  /// 1: turns to the right, -1: to the left, 0: straight on.
+  int side() const { return side_; }
   /// The newest `right`, as a share of the border at which turning begins.
   double share() const { return share_; }
 
  private:
   TurnMapping mapping_;
-  int side_ = 0;  ///< 1: turns to the right, -1: to the left.
+  int side_ = 0;
   double known_s_ = 0;
   bool valid_ = false;
   double share_ = 0;

@@ -105,6 +105,35 @@ TEST(Leg, TheFootThatIsLiftedHigherIsTheOuterOne) {
   EXPECT_EQ(leg.Advance(5, Standing()).turn_per_step_rad, 0);
 }
 
+TEST(Leg, FeetThatAreLiftedUnequallyStepWhateverTheirPhase) {
+  const double left_mps2 = 20, right_mps2 = 12;
+  Inputs alike = Stepping(2.6, 0.1, left_mps2, right_mps2);
+  Inputs unclear = alike;
+  unclear.legs.phase_valid = false;
+  Inputs low = unclear;  // The foot that is hardly lifted shows another rhythm, or none.
+  low.legs.right.frequency_hz = 5.2;
+  for (const Inputs& inputs : {alike, unclear, low}) {
+    LegInterface leg = NewLeg({.turn_by = TurnSource::kFeet});
+    const auto command = Settled(leg, 0, inputs);
+    EXPECT_EQ(command.gait, Gait::kRun);
+    EXPECT_NEAR(command.speed_mps, 2.7, 1e-9);  // 0.4 of the way from 1.5 to 4.5 m/s.
+  }
+  LegInterface by_head = NewLeg();
+  EXPECT_EQ(Settled(by_head, 0, alike).gait, Gait::kJump);
+}
+
+TEST(Leg, FeetThatTurnedJumpOnceTheyAreSeenTogetherOrLiftedAlike) {
+  const Inputs uneven = Stepping(2.6, kPi, 20, 12);
+  const Inputs alike = Stepping(2.6, 0, 17, 16);
+  Inputs together = Stepping(2.6, 0, 20, 12);  // Of the last period; no new one yet.
+  together.legs.left.frequency_valid = together.legs.right.frequency_valid = false;
+  for (const Inputs& inputs : {alike, together}) {
+    LegInterface leg = NewLeg({.turn_by = TurnSource::kFeet});
+    EXPECT_EQ(Settled(leg, 0, uneven).gait, Gait::kRun);
+    EXPECT_EQ(Settled(leg, 2, inputs).gait, Gait::kJump);
+  }
+}
+
 TEST(Leg, ThePictureFollowsTheHeadOnlyWhereThatIsChosen) {
   Inputs inputs = Standing();
   inputs.head = Upright(12);
