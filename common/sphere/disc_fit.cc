@@ -69,8 +69,7 @@ class Strategy {
     const bool is_cut = disc::IsCut(start_.reach);
     if (!IsGood() || is_cut) {
       // Fewer pixels always fit better: a hidden part must explain all of the misfit.
-      const auto fit = BehindAnEdge();
-      if (fit && fit->solution.misfit_sds < kGoodSds) {
+      if (const auto fit = BehindAnEdge()) {
         Keep(*fit);
         is_behind_edge_ = true;
       } else if (is_cut && !(best_ && best_->solution.misfit_sds < MostSdsOfCut())) {

@@ -1,5 +1,6 @@
 #include "common/sphere/disc_hidden.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,7 +15,11 @@ constexpr std::size_t kEdgeStep = 4;        // Of the places that come into ques
 constexpr std::size_t kEdgeStepHidden = 2;  // Where it is known which part of the edge is hidden.
 // Of those, that are tried; where edges are missing, more.
 constexpr std::size_t kMostPlaces = 3, kMostPlacesCut = 5;
-constexpr int kFewestHidden = 3;       // Sectors; one or two are noise.
+constexpr int kFewestHidden = 3;  // Sectors; one or two are noise.
+// A line through places that are not on the cone: how many there are at least, how far from it they
+// are, RMS, and the radius from which on rays are far apart.
+constexpr std::size_t kFewestPlaces = 5;
+constexpr double kStraightBlurs = 0.6, kLargeBlurs = 5;
 constexpr double kHopelessSds = 20;    // Of the coarse places; a finer one gains some 10.
 constexpr double kMostResidual2 = 36;  // Of a pixel.
 
@@ -34,15 +39,27 @@ int HiddenSectors(const SectorReach& reach) {
 }
 
 std::optional<Fit> HiddenPart::Find(const State& whole, bool is_good) {
-  std::vector<bool> clear(kSectors, true);
-  fitter_.LookBehind(begin_, 0, clear);
-  const std::vector<Sample> all = fitter_.samples(), some = Thinned(all, kSomePixels);
+  clear_.assign(kSectors, true);
+  fitter_.LookBehind(begin_, 0, clear_);
+  const std::vector<Sample> all = fitter_.samples();
+  const auto fit = AcrossRay(whole, all, is_good);
+  if (fit && fit->solution.misfit_sds < kGoodSds) return fit;
+  if (is_good) return std::nullopt;
+  const auto edge = Through();
+  const auto other = edge ? FitBefore(*edge, all) : std::nullopt;
+  // A line that is seen needs less of a proof than one that was tried among others.
+  return other && other->solution.misfit_sds < kPoorSds ? other : std::nullopt;
+}
+
+std::optional<Fit> HiddenPart::AcrossRay(const State& whole, const std::vector<Sample>& all,
+                                         bool is_good) {
+  const std::vector<Sample> some = Thinned(all, kSomePixels);
   const std::size_t count = start_.edges.size();
   std::vector<std::optional<Solution>> tried(count);
   std::optional<std::size_t> best;
   const auto attempt = [&](std::size_t i) {
     if (tried[i]) return;
-    tried[i] = Before(i, some, 3);
+    tried[i] = Before(Across(i), some, 3);
     const auto cost = [&](std::size_t k) { return Cost(*tried[k], some.size()); };
     if (tried[i] && (!best || cost(i) < cost(*best))) best = i;
   };
@@ -54,9 +71,7 @@ std::optional<Fit> HiddenPart::Find(const State& whole, bool is_good) {
     attempt((middle + count - step) % count);
   }
   if (tried[*best]->misfit_sds > kPoorSds) return std::nullopt;
-  const auto solution = Before(*best, all, 8);
-  if (!solution) return std::nullopt;
-  return Fit{*solution, SectorsBefore(*best, solution->state, clear)};
+  return FitBefore(Across(*best), all);
 }
 
 /// The best of a coarse selection, by what the cost gains when the pixels beyond each are left out
@@ -67,7 +82,7 @@ std::vector<std::size_t> HiddenPart::Places(const State& whole, const std::vecto
   fitter_.Evaluate(whole);
   std::vector<std::pair<double, std::size_t>> places;
   for (std::size_t i = 0; i < start_.edges.size(); i += is_good ? kEdgeStepHidden : kEdgeStep) {
-    const Eigen::Vector2d &at = start_.edges[i], away = at.normalized();
+    const auto [at, away] = Across(i);
     if (is_good && !IsHidden(at)) continue;
     double gain = 0;
     for (const Sample& sample : fitter_.samples()) {
@@ -90,33 +105,66 @@ bool HiddenPart::IsHidden(const Eigen::Vector2d& edge) const {
 
 double HiddenPart::Margin() const { return kHiddenMargin * fitter_.Blur(); }
 
-std::optional<Solution> HiddenPart::Before(std::size_t edge, const std::vector<Sample>& samples,
-                                           int rounds) {
-  const Eigen::Vector2d &at = start_.edges[edge], away = at.normalized();
+StraightEdge HiddenPart::Across(std::size_t edge) const {
+  return {start_.edges[edge], start_.edges[edge].normalized()};
+}
+
+/// The line through the places where the light of a large sphere ends before its cone does.
+std::optional<StraightEdge> HiddenPart::Through() const {
+  const double blur = fitter_.Blur();
+  if (start_.cone.tangent < kLargeBlurs * blur) return std::nullopt;
+  std::vector<Eigen::Vector2d> places;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero(), seen = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& edge : start_.edges) {
+    seen += edge;
+    if (!IsHidden(edge) || Beyond(start_.cone, edge) > -blur) continue;
+    places.push_back(edge);
+    middle += edge;
+  }
+  if (places.size() < kFewestPlaces) return std::nullopt;
+  middle /= static_cast<double>(places.size());
+  seen /= static_cast<double>(start_.edges.size());
+  Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& place : places)
+    square += (place - middle) * (place - middle).transpose() / double(places.size());
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(square);
+  if (axes.eigenvalues()[0] > std::pow(kStraightBlurs * blur, 2)) return std::nullopt;
+  const Eigen::Vector2d across = axes.eigenvectors().col(0);
+  return StraightEdge{middle, across.dot(middle - seen) > 0 ? across : Eigen::Vector2d(-across)};
+}
+
+std::optional<Solution> HiddenPart::Before(const StraightEdge& edge,
+                                           const std::vector<Sample>& samples, int rounds) {
   fitter_.Use(samples);
-  fitter_.KeepBefore(at, away, Margin());
-  return fitter_.Solve(StartBefore(at, away), false, rounds);
+  fitter_.KeepBefore(edge.at, edge.away, Margin());
+  return fitter_.Solve(StartBefore(edge), false, rounds);
+}
+
+std::optional<Fit> HiddenPart::FitBefore(const StraightEdge& edge, const std::vector<Sample>& all) {
+  const auto solution = Before(edge, all, 8);
+  if (!solution) return std::nullopt;
+  return Fit{*solution, SectorsBefore(edge, solution->state)};
 }
 
 /// Those whose edge is on the near side of the line.
-std::vector<bool> HiddenPart::SectorsBefore(std::size_t edge, const State& state,
-                                            std::vector<bool> sectors) const {
-  const Eigen::Vector2d& at = start_.edges[edge];
+std::vector<bool> HiddenPart::SectorsBefore(const StraightEdge& edge, const State& state) const {
+  std::vector<bool> sectors = clear_;
   for (std::size_t s = 0; s < kSectors; ++s) {
     const double turn = 2 * std::numbers::pi * static_cast<double>(s) / kSectors;
     const Eigen::Vector2d place =
         state.shape.head<2>() + state.shape[2] * Eigen::Vector2d(std::cos(turn), std::sin(turn));
-    if ((place - at).dot(at.normalized()) > -Margin()) sectors[s] = false;
+    if ((place - edge.at).dot(edge.away) > -Margin()) sectors[s] = false;
   }
   return sectors;
 }
 
 /// The cone through the edges on the near side of a line.
-State HiddenPart::StartBefore(const Eigen::Vector2d& at, const Eigen::Vector2d& away) const {
+State HiddenPart::StartBefore(const StraightEdge& edge) const {
   State state = begin_;
   std::vector<bool> before;
-  for (const Eigen::Vector2d& edge : start_.edges)
-    before.push_back((edge - at).dot(away) < -Margin());
+  for (const Eigen::Vector2d& place : start_.edges)
+    before.push_back((place - edge.at).dot(edge.away) < -Margin());
   const auto cone = FitCone(start_.edges, before);
   if (cone && cone->tangent > 0.5 * start_.cone.tangent &&
       cone->tangent < 2 * start_.cone.tangent) {

@@ -19,9 +19,17 @@ struct Fit {
 int HiddenSectors(const SectorReach& reach);
 bool IsCut(const SectorReach& reach);
 
+/// What is left out: beyond a line through `at`, on the side to which `away`, a unit vector,
+/// points.
+struct StraightEdge {
+  Eigen::Vector2d at, away;
+};
+
 /// Looks for a straight edge that hides what is beyond it: through a place where the light ends,
 /// across the way there. Its blurred light is left out; the place is taken with the best of
-/// Akaike's costs. A part of the pixels is enough to find it.
+/// Akaike's costs. A part of the pixels is enough to find it. On a large sphere the rays are so far
+/// apart that no such edge may be near the true one: then the places that are not on the cone are
+/// enough of them to draw the line through.
 class HiddenPart {
  public:
   /// `begin`: where fits begin. All are borrowed; the fitter has collected the sphere's pixels.
@@ -29,22 +37,27 @@ class HiddenPart {
       : fitter_(fitter), start_(start), begin_(begin) {}
 
   /// `whole`: the sphere fitted as a whole; `is_good`: that explains the light, so that only places
-  /// without the cone's edge come into question.
+  /// without the cone's edge come into question. Nothing if noise does not explain the misfit.
   std::optional<Fit> Find(const State& whole, bool is_good);
 
  private:
+  std::optional<Fit> AcrossRay(const State& whole, const std::vector<Sample>& all, bool is_good);
   std::vector<std::size_t> Places(const State& whole, const std::vector<Sample>& some,
                                   bool is_good);
-  std::optional<Solution> Before(std::size_t edge, const std::vector<Sample>& samples, int rounds);
-  std::vector<bool> SectorsBefore(std::size_t edge, const State& state,
-                                  std::vector<bool> sectors) const;
-  State StartBefore(const Eigen::Vector2d& at, const Eigen::Vector2d& away) const;
+  StraightEdge Across(std::size_t edge) const;
+  std::optional<StraightEdge> Through() const;
+  std::optional<Solution> Before(const StraightEdge& edge, const std::vector<Sample>& samples,
+                                 int rounds);
+  std::optional<Fit> FitBefore(const StraightEdge& edge, const std::vector<Sample>& all);
+  std::vector<bool> SectorsBefore(const StraightEdge& edge, const State& state) const;
+  State StartBefore(const StraightEdge& edge) const;
   bool IsHidden(const Eigen::Vector2d& edge) const;
   double Margin() const;
 
   Fitter& fitter_;
   const DiscStart& start_;
   const State& begin_;
+  std::vector<bool> clear_;  ///< Sectors with one level behind them.
 };
 
 }  // namespace footing::sphere::disc

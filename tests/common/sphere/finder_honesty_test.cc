@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "common/sphere/find.h"
@@ -64,6 +65,40 @@ TEST(FinderHonesty, HalfOfItIsHidden) {
   EXPECT_GE(honesty.found, kFrames - 1);
   EXPECT_GT(honesty.nees, kLeast);
   EXPECT_LT(honesty.nees, kMost);
+}
+
+/// Hides what is beyond a line across this direction, so many radii from the middle of the disc.
+void HideBeyond(camera::Scene& scene, double angle_rad, double radii) {
+  const camera::Ball& ball = scene.balls.front();
+  const double radius_px = scene.lens.fx_px * ball.radius_m / ball.p_C_m.z();
+  camera::Occluder edge;
+  edge.towards_hidden = {std::cos(angle_rad), std::sin(angle_rad)};
+  edge.point_px = camera::Project(scene.lens, ball.p_C_m) + radii * radius_px * edge.towards_hidden;
+  scene.occluders = {edge};
+}
+
+TEST(FinderHonesty, ANearSphereIsMeasuredByItsLightBeforeAnyEdge) {
+  // These edges lie between two of the rays along which the light is followed, and one in ten
+  // frames was measured by its cone alone: 5 to 12 mm off. By its light it is 0.4 and 0.9 mm, RMS.
+  constexpr double kRadian = std::numbers::pi / 180;
+  noise::Random random(3);
+  Finder finder(Lens(), {Target()}, Settings());
+  for (const auto& [angle_rad, radii] :
+       {std::pair(26 * kRadian, 0.404), std::pair(60 * kRadian, 0.404),
+        std::pair(65 * kRadian, 0.0)}) {
+    camera::Scene scene;
+    scene.balls.resize(1);
+    scene.balls[0].p_C_m = {0.03, -0.02, 0.52};
+    HideBeyond(scene, angle_rad, radii);
+    const Eigen::Vector3d truth = camera::Truth(scene, scene.balls[0])->p_C_m;
+    for (const auto& mosaic : camera::RenderStill(scene, 2 * kFrames, random)) {
+      finder.Forget();
+      const auto found = finder.Find(View(mosaic)).front();
+      ASSERT_TRUE(found);
+      EXPECT_FALSE(found->is_by_edge);
+      EXPECT_NEAR((found->p_C_m - truth).dot(truth.normalized()), 0, 0.0036);
+    }
+  }
 }
 
 TEST(FinderHonesty, ItMovesAtTwoMetresPerSecond) {
