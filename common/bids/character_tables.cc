@@ -1,5 +1,6 @@
 #include "common/bids/character_tables.h"
 
+#include <cmath>
 #include <utility>
 
 #include "common/stream/gait.h"
@@ -120,7 +121,8 @@ void AddEvents(const v1::Tick& tick, const RunClock& clock, const std::set<std::
     const std::string type = TypeOf(event);
     const bool counts =
         event.kind() != v1::Event::KIND_FALL || undone.count(event.failure().number()) == 0;
-    if (!type.empty()) events.push_back({clock(event.host_ns()), type, counts});
+    const double onset_s = clock(event.host_ns());
+    if (!type.empty() && std::isfinite(onset_s)) events.push_back({onset_s, type, counts});
   }
 }
 

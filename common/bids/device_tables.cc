@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "common/stream/device.h"
+#include "common/units/instant.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 
@@ -18,8 +19,19 @@ std::string PointOf(const std::string& rig, stream::DeviceRole role) {
 
 }  // namespace
 
+Result<RunClock> RunClock::Of(const recording::RecordedServer& server, std::int64_t zero_wall_ns) {
+  const bool known =
+      IsInstant(server.wall_time_ns) && IsInstant(server.host_ns) && IsInstant(zero_wall_ns);
+  RunClock clock;
+  if (known) clock.offset_ns_ = server.wall_time_ns - server.host_ns - zero_wall_ns;
+  if (!known || !IsInstant(clock.offset_ns_)) {
+    return InvalidData("the times of " + server.name + " are not those of a host");
+  }
+  return clock;
+}
+
 double RunClock::operator()(std::int64_t host_ns) const {
-  return NanosecondsToSeconds(host_ns + offset_ns_);
+  return IsInstant(host_ns) ? NanosecondsToSeconds(host_ns + offset_ns_) : kMissing;
 }
 
 void DeviceTables::Start(const RunClock& clock) {
@@ -55,7 +67,7 @@ MotionTable* DeviceTables::Find(std::uint32_t device, std::int64_t sampled_ns,
 MotionTable* DeviceTables::Find(const Device& device, std::int64_t sampled_ns,
                                 const std::string& part) {
   time_s_ = clock_(sampled_ns != 0 ? sampled_ns : tick_ns_);
-  if (time_s_ < 0) return nullptr;
+  if (!(time_s_ >= 0)) return nullptr;
   point_ = device.point;
   MotionTable& table = tables_[point_ + part];
   if (table.channels.empty()) {

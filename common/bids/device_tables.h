@@ -6,6 +6,7 @@
 
 #include "common/bids/tables.h"
 #include "common/recording/recorded_session.h"
+#include "common/result/result.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::bids {
@@ -14,9 +15,9 @@ namespace footing::bids {
 /// stand on the wall clock of the recorder's host.
 class RunClock {
  public:
-  RunClock() = default;
-  RunClock(const recording::RecordedServer& server, std::int64_t zero_wall_ns)
-      : offset_ns_(server.wall_time_ns - server.host_ns - zero_wall_ns) {}
+  /// InvalidData where the recording's times are not those of a host.
+  static Result<RunClock> Of(const recording::RecordedServer& server, std::int64_t zero_wall_ns);
+  /// NaN for an instant to which no clock comes.
   double operator()(std::int64_t host_ns) const;
 
  private:

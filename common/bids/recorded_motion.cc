@@ -6,6 +6,7 @@
 
 #include "common/bids/character_tables.h"
 #include "common/bids/device_tables.h"
+#include "common/units/instant.h"
 
 namespace footing::bids {
 namespace {
@@ -14,7 +15,8 @@ using recording::RecordedServer;
 using v1::Tick;
 
 std::int64_t WallOf(const RecordedServer& server, std::int64_t host_ns) {
-  return host_ns + server.wall_time_ns - server.host_ns;
+  const bool known = IsInstant(server.wall_time_ns) && IsInstant(server.host_ns);
+  return known ? host_ns + server.wall_time_ns - server.host_ns : 0;
 }
 
 class Reader {
@@ -68,9 +70,10 @@ class Reader {
       const bool chosen = IsChosen(tick);
       if (chosen && !zero_wall_ns_) zero_wall_ns_ = WallOf(server, tick.host_ns());
       if (!zero_wall_ns_) continue;
-      const RunClock clock(server, *zero_wall_ns_);
-      if (chosen) characters_.Add(clock(tick.host_ns()), tick);
-      AddEvents(tick, clock, choice_.undone, motion_.events);
+      const auto clock = RunClock::Of(server, *zero_wall_ns_);
+      if (!clock) return clock.error();
+      if (chosen) characters_.Add((*clock)(tick.host_ns()), tick);
+      AddEvents(tick, *clock, choice_.undone, motion_.events);
     }
     return {};
   }
@@ -80,7 +83,9 @@ class Reader {
         server, {Tick::kStatusFieldNumber, Tick::kMotionFieldNumber, Tick::kBoardsFieldNumber,
                  Tick::kNunchukFieldNumber, Tick::kHandsFieldNumber});
     if (!ticks) return ticks.error();
-    devices_.Start(RunClock(server, *zero_wall_ns_));
+    const auto clock = RunClock::Of(server, *zero_wall_ns_);
+    if (!clock) return clock.error();
+    devices_.Start(*clock);
     for (const Tick& tick : *ticks) devices_.Add(tick);
     return {};
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "footing/v1/session.pb.h"
 #include "tests/common/made_recording.h"
@@ -126,6 +127,30 @@ TEST_F(ReadMotionTest, ATrialBeginsAtItsFirstFrameWithTheDevicesThatHaveARole) {
   const auto other = Read({"t2", {}, true});
   ASSERT_FALSE(other.ok());
   EXPECT_THAT(other.error().message, HasSubstr("no frame of trial t2"));
+}
+
+TEST_F(ReadMotionTest, TimesThatNoClockHasAreRefusedOrLeftOut) {
+  constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
+  {
+    test::MadeRecording recording(folder_.Path("a.mcap"));
+    recording.Begin("footingd");
+    v1::Tick tick = TickAt(1, kSecondNs);
+    AddDevice(1, v1::DEVICE_ROLE_LEFT_HAND, tick);
+    for (const std::int64_t sampled_ns : {kEnd, -kEnd, kSecondNs})
+      AddMotion(1, sampled_ns, 1, tick);
+    recording.Add(tick);
+  }
+  const auto motion = Read({});
+  ASSERT_TRUE(motion.ok()) << motion.error().message;
+  EXPECT_THAT(ColumnOf(motion->tables.at(0), "latency"), ElementsAre(0));
+  {
+    test::MadeRecording recording(folder_.Path("a.mcap"));
+    recording.Begin("footingd", -kEnd, kEnd);
+    v1::Tick tick = TickAt(1, kSecondNs);
+    AddDevice(1, v1::DEVICE_ROLE_LEFT_HAND, tick);
+    recording.Add(tick);
+  }
+  EXPECT_EQ(Read({}).error().kind, ErrorKind::kInvalidData);
 }
 
 TEST_F(ReadMotionTest, RolesOfTwoRigsStayApartAndAHandThatIsNotSeenHasNoPlace) {
