@@ -15,6 +15,9 @@ constexpr double kAwayShare = 0.3;      // Of the weight: nobody stands on the c
 constexpr double kAloftShare = 0.05;    // Nobody touches them.
 constexpr double kFlightS = 0.12;       // Shorter than any jump.
 constexpr double kMostSpread = 1.0;     // m, m/s: more than this is unknown.
+// How far the COM of bodies that step is from where the filters place it, forwards and sideways.
+const Eigen::Vector2d kSteppedSpreadM(0.15, 0.05);
+constexpr std::size_t kMostBoardCells = 4;  // Insoles have more, and follow steps.
 
 }  // namespace
 
@@ -73,12 +76,17 @@ void BestEstimator::Begin() {
   horizontal_[1].Start(pose_.cop_m.y(), centre.y());
   vertical_.Start(pose_.mean_loads);
   load_share_ = {};
+  step_watch_.Start(FeetForward());
   estimate_.angular_momentum_kgm2ps.setZero();
   estimate_.angular_momentum_variance.setZero();
 }
 
 Eigen::Vector2d BestEstimator::Centre() const {
   return 0.5 * (places_[0].position_m() + places_[1].position_m()).head<2>();
+}
+
+std::array<double, kFeet> BestEstimator::FeetForward() const {
+  return {places_[0].position_m().x(), places_[1].position_m().x()};
 }
 
 const Estimate& BestEstimator::Advance(const ContactLoads& loads) {
@@ -94,9 +102,13 @@ const Estimate& BestEstimator::Advance(const ContactLoads& loads) {
   }
   WatchFlight(loads, gap, total);
   away_s_ = away ? away_s_ + step_s_ : 0;
-  if (!gap) load_share_.Advance(total / (pose_.mass_kg * kStandardGravityMps2), step_s_);
+  if (!gap) {
+    load_share_.Advance(total / (pose_.mass_kg * kStandardGravityMps2), step_s_);
+    if (loads.feet[0].count <= kMostBoardCells) step_watch_.Advance(FeetForward(), step_s_);
+  }
   estimate_.load_share = load_share_.share();
   estimate_.whole_weight = load_share_.whole();
+  estimate_.stepped = step_watch_.stepped();
   estimate_.valid = !gap && away_s_ < kAwayS;
   AdvanceCom(loads, gap || away_s_ >= kAwayS);
   if (!gap) AdvanceAngular();
@@ -187,7 +199,9 @@ void BestEstimator::ReportCom() {
     const HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
     const auto position = axis.Position(lag_steps_);
     estimate_.p_WC_m(i) = position.mean;
-    estimate_.position_variance_m2(i) = std::min(position.variance, kMostSpread);
+    const double stepped_m = estimate_.stepped ? kSteppedSpreadM(i) : 0;
+    estimate_.position_variance_m2(i) =
+        std::min(position.variance + stepped_m * stepped_m, kMostSpread);
     estimate_.v_WC_mps(i) = axis.Velocity().mean;
     estimate_.velocity_variance_m2ps2(i) = std::min(axis.Velocity().variance, kMostSpread);
     estimate_.a_WC_mps2(i) = axis.Acceleration().mean;

@@ -11,6 +11,7 @@
 #include "daemon/simulation/momentum/foot_place.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
 #include "daemon/simulation/momentum/load_share.h"
+#include "daemon/simulation/momentum/step_watch.h"
 #include "daemon/simulation/momentum/vertical_bank.h"
 
 namespace footing::momentum {
@@ -67,6 +68,7 @@ class BestEstimator {
   void ReportCom();
   void AdvanceAngular();
   Eigen::Vector2d Centre() const;
+  std::array<double, kFeet> FeetForward() const;
 
   BestConfig config_;
   Subject subject_;
@@ -79,6 +81,7 @@ class BestEstimator {
   std::array<FootPlace, kFeet> places_;
   std::array<Pressure, kFeet> pressures_{};
   LoadShare load_share_;
+  StepWatch step_watch_;
   double away_s_ = 0;   // Since the feet had load, or the sources were valid.
   double aloft_s_ = 0;  // Since the feet had any load.
   Estimate estimate_;

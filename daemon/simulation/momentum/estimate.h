@@ -55,6 +55,9 @@ struct Estimate {
   /// False while the cells carry less or more than a body that neither falls nor rises for seconds:
   /// it stands on something else, too, or carries a load (LoadShare).
   bool whole_weight = true;
+  /// A foot has just stepped ahead or back (StepWatch): the horizontal position lags behind by more
+  /// than filters of bodies in place know, and its variance says so. Best mode.
+  bool stepped = false;
   double load_share = 1;  ///< Of the T-pose's weight, in the mean of the last seconds.
   Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();

@@ -97,6 +97,11 @@ void AddBesides(const PoseFrame& frame, std::string& note) {
     Add(note, std::string("the ") + kSides[side] +
                   " foot presses on the edge of its board: what is beyond is not measured");
   }
+  if (frame.momentum.valid && frame.momentum.stepped) {
+    Add(note,
+        "a foot has stepped ahead or back: where the body is, is not certain until it has stood "
+        "for some seconds");
+  }
   if (!frame.momentum.valid || frame.momentum.whole_weight) return;
   const bool less = frame.momentum.load_share < 1;
   Add(note,
@@ -164,7 +169,8 @@ std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
   if (measured) AddBesides(frame, note);
   if (measured && frame.momentum.valid && frame.momentum.whole_weight && !frame.momentum.trusted)
     Add(note, "the height by the loads is not certain: it does not count for the pose");
-  else if (measured && frame.momentum.valid && frame.momentum.trusted && !frame.valid)
+  else if (measured && frame.momentum.valid && frame.momentum.trusted && !frame.momentum.stepped &&
+           !frame.valid)
     Add(note, "what is measured fits no pose that the model knows: this one is a guess");
   AddHands(frame, note);
   AddMass(frame, subject, note);

@@ -28,6 +28,7 @@ void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output)
   const Measurement now = estimate_.Advance(Plausible(inputs));
   output.mass_kg = estimate_.mass_kg();
   ReportEstimate(now.momentum, state_.solver_resets, output);
+  output.valid = output.valid && !now.momentum.stepped;
   output.posture_com_W_m = now.posture_com_W_m;
   const Measurement then = Delayed(now);
   truth_.Add(truth);
@@ -56,6 +57,7 @@ Measurement BestMode::Delayed(const Measurement& now) {
   then.momentum.p_WC_m = now.momentum.p_WC_m;
   then.momentum.position_variance_m2 = now.momentum.position_variance_m2;
   then.momentum.trusted = now.momentum.trusted;
+  then.momentum.stepped = now.momentum.stepped;
   return then;
 }
 

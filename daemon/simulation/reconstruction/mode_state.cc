@@ -38,7 +38,7 @@ void SolutionReport::Report(const ModeState& state, const Measurement& then,
   resets_ = then.momentum.resets;
   misfit_.Report(MisfitOf(*state.model, state.targets, state.origin_m, state.pose.at, prior),
                  state.options.step_s(), output);
-  const double doubt = Doubt(output.misfit, then.momentum.trusted);
+  const double doubt = Doubt(output.misfit, then.momentum.trusted && !then.momentum.stepped);
   spread_.Advance(solver);
   spread_.Report(doubt, output);
   ReportCom(then.momentum, output);

@@ -61,6 +61,16 @@ TEST(PoseNote, SaysThatAFootPressesOnTheEdgeOfItsBoard) {
             "the left foot presses on the edge of its board: put it in the middle of the board");
 }
 
+TEST(PoseNote, SaysThatAFootHasStepped) {
+  PoseFrame frame = Well();
+  frame.valid = false;
+  frame.momentum.valid = true;
+  frame.momentum.stepped = true;
+  EXPECT_EQ(PoseNote(frame, kSubject),
+            "a foot has stepped ahead or back: where the body is, is not certain until it has "
+            "stood for some seconds");
+}
+
 TEST(PoseNote, LeadsThroughTheTPose) {
   PoseFrame frame = Well();
   frame.t_pose.complete = false;

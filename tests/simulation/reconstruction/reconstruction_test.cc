@@ -171,6 +171,22 @@ TEST(Reconstruction, IsNotValidWhileWhatIsMeasuredFitsNoPose) {
   EXPECT_TRUE(reconstruction.output().valid);
 }
 
+TEST(Reconstruction, IsNotValidWhileAFootHasJustSteppedAhead) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate());
+  constexpr std::size_t kStep = 400;
+  for (std::size_t i = 0; i < kStep; ++i) reconstruction.Advance(world.inputs[i]);
+  EXPECT_TRUE(reconstruction.output().valid);
+  for (std::size_t i = kStep; i < kStep + 6; ++i) {
+    Inputs inputs = world.inputs[i];
+    for (momentum::Cell& cell : inputs.loads.feet[0].cells) cell.p_WS_m.x() += 0.5;
+    reconstruction.Advance(inputs);
+  }
+  EXPECT_TRUE(reconstruction.output().momentum.trusted);
+  EXPECT_LT(reconstruction.output().misfit, 2) << "fits, so far";
+  EXPECT_FALSE(reconstruction.output().valid);
+}
+
 TEST(Reconstruction, ACopyGoesOnAsTheOriginalAndApartFromIt) {
   World world;
   Reconstruction original = world.Made(world.AtRate());

@@ -99,6 +99,7 @@ class TrialScore {
     json["not_valid_for"] = {{"no_loads", no_loads_},
                              {"weight_elsewhere", weight_elsewhere_},
                              {"height", height_},
+                             {"step", step_},
                              {"misfit", misfit_count_}};
     json["longest_invalid_s"] = static_cast<double>(longest_invalid_) / run_.rate_hz;
     json["finite"] = finite_;
@@ -115,6 +116,7 @@ class TrialScore {
     ++(!output.momentum.valid          ? no_loads_
        : !output.momentum.whole_weight ? weight_elsewhere_
        : !output.momentum.trusted      ? height_
+       : output.momentum.stepped       ? step_
                                        : misfit_count_);
   }
 
@@ -129,7 +131,8 @@ class TrialScore {
   Spread misfit_;
   std::size_t frames_ = 0, invalid_ = 0;
   std::size_t invalid_since_ = 0, longest_invalid_ = 0;  ///< Frames in a row.
-  std::size_t no_loads_ = 0, weight_elsewhere_ = 0, height_ = 0, misfit_count_ = 0;  ///< Causes.
+  /// Causes.
+  std::size_t no_loads_ = 0, weight_elsewhere_ = 0, height_ = 0, step_ = 0, misfit_count_ = 0;
   bool finite_ = true;
 };
 
