@@ -72,10 +72,6 @@ def wrong_words(stage):
     expect(stage, USAGE, "--token-file", "footing-relay", "serve", *broker, "--listen", "tls:127.0.0.1:7460")
     expect(stage, USAGE, "unknown --channel nonsense; there are: status, motion", "footing-relay", "publish", *broker,
            "--channel", "nonsense")
-    expect(stage, USAGE, "does not apply to --mode paper", "footing-eval", "momentum", "--motion", "clip.bvh", "--mode",
-           "paper", "--lag-ms", 100)
-    expect(stage, USAGE, "--test t: must be one of dunnett, ", "footing-eval", "stats", "--test", "t", "--data", "a.csv")
-    expect(stage, USAGE, "--trials -1: must be from 1 to ", "footing-eval", "monkey", "--trials", -1)
     expect(stage, USAGE, "not a broker's address", "footing-relay", "publish", "--nats", "nonsense")
 
 
@@ -112,10 +108,19 @@ def no_server(stage):
     expect(stage, NO_DEVICE, starts_it, "footing-stream", "user", "--script", "walk", "--to", nobody, "--seconds", 1)
     expect(stage, NO_DEVICE, starts_it, "footing-skeleton", "--listen", "127.0.0.1:0", "--to", nobody, "--seconds", 1)
     assert stage.run("footing-skeleton", "--listen", "127.0.0.1:0", "--no-publish", "--seconds", 1).returncode == 0
+
+
+def evaluations(stage):
+    """Of footing-eval, and of frames that it makes."""
+    expect(stage, USAGE, "does not apply to --mode paper", "footing-eval", "momentum", "--motion", "clip.bvh", "--mode",
+           "paper", "--lag-ms", 100)
+    expect(stage, USAGE, "--test t: must be one of dunnett, ", "footing-eval", "stats", "--test", "t", "--data", "a.csv")
+    expect(stage, USAGE, "--trials -1: must be from 1 to ", "footing-eval", "monkey", "--trials", -1)
+    nobody = f"unix:{stage.folder}/nobody.sock"
     frames = stage.folder / "frames"
     stage.run_json("footing-eval", "spheres", "--distance-m", "1.5", "--frames", 1, "--out", frames)
-    expect(stage, NO_DEVICE, starts_it, "footing-camera", "--camera", frames / "camera.json", "--frames", frames,
-           "--repeat", "--to", nobody, "--sensor", nobody, "--preview", "none", "--seconds", 1)
+    expect(stage, NO_DEVICE, f"footingd --source stream:{nobody}", "footing-camera", "--camera", frames / "camera.json",
+           "--frames", frames, "--repeat", "--to", nobody, "--sensor", nobody, "--preview", "none", "--seconds", 1)
 
 
 def garbage(address):
@@ -179,6 +184,8 @@ def main(binaries):
         wrong_words(stage)
         wrong_motions(stage)
         no_server(stage)
+        if (stage.binaries / "footing-eval").exists():  # No part of a build with sanitizers.
+            evaluations(stage)
         one_server(stage)
         disturb_nobody(stage)
 
