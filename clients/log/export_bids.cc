@@ -49,9 +49,7 @@ class DataSet {
                                  table.channels.size(),
                                  table.cells.size() / table.channels.size()});
     }
-    for (const bids::File& file :
-         {bids::File{stem + "_events.tsv", bids::EventsTsv(motion.events)},
-          bids::File{stem + "_events.json", bids::EventsCodebook().dump(2) + "\n"}}) {
+    for (const bids::File& file : bids::EventFiles(motion.events, stem)) {
       if (const auto done = Write(motions, file, options_.replace); !done) return done.error();
     }
     if (const auto done = WriteTop(subject); !done) return done.error();
@@ -81,15 +79,14 @@ class DataSet {
       text = *read;
     }
     std::istringstream lines(text);
-    std::size_t columns = 0;
     for (std::string line; std::getline(lines, line);) {
-      if (columns == 0)
-        columns = 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), '\t'));
       if (line.substr(0, line.find('\t')) == subject) return {};
     }
     if (!text.ends_with('\n')) text += '\n';
+    const std::string header = text.substr(0, text.find('\n'));
+    const auto more = std::count(header.begin(), header.end(), '\t');  // Columns added by somebody.
     text += subject;
-    for (std::size_t i = 1; i < columns; ++i) text += "\tn/a";
+    for (auto i = more; i > 0; --i) text += "\tn/a";
     return Write(folder_, {"participants.tsv", text + "\n"}, true);
   }
 
@@ -115,9 +112,8 @@ Result<ExportedBids> ExportBids(const std::string& recording, const std::string&
   const auto motion = bids::ReadMotion(*session, {});
   if (!motion) return motion.error();
   if (motion->tables.empty()) {
-    return InvalidData(
-        recording +
-        " has no samples of a Wiimote, Balance Board or Nunchuk and no frame of footing-sim");
+    return InvalidData(recording +
+                       " has no samples of devices or tracked hands and no frame of footing-sim");
   }
   return DataSet(folder, options).Add(*motion, subject, task, name);
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bids/device_tables.h"
+#include "common/bids/run_clock.h"
 #include "common/bids/tables.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/session.pb.h"

@@ -3,8 +3,6 @@
 #include <limits>
 
 #include "common/stream/device.h"
-#include "common/units/instant.h"
-#include "common/units/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::bids {
@@ -18,21 +16,6 @@ std::string PointOf(const std::string& rig, stream::DeviceRole role) {
 }
 
 }  // namespace
-
-Result<RunClock> RunClock::Of(const recording::RecordedServer& server, std::int64_t zero_wall_ns) {
-  const bool known =
-      IsInstant(server.wall_time_ns) && IsInstant(server.host_ns) && IsInstant(zero_wall_ns);
-  RunClock clock;
-  if (known) clock.offset_ns_ = server.wall_time_ns - server.host_ns - zero_wall_ns;
-  if (!known || !IsInstant(clock.offset_ns_)) {
-    return InvalidData("the times of " + server.name + " are not those of a host");
-  }
-  return clock;
-}
-
-double RunClock::operator()(std::int64_t host_ns) const {
-  return IsInstant(host_ns) ? NanosecondsToSeconds(host_ns + offset_ns_) : kMissing;
-}
 
 void DeviceTables::Start(const RunClock& clock) {
   clock_ = clock;

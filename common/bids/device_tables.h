@@ -4,25 +4,11 @@
 #include <map>
 #include <string>
 
+#include "common/bids/run_clock.h"
 #include "common/bids/tables.h"
-#include "common/recording/recorded_session.h"
-#include "common/result/result.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::bids {
-
-/// Seconds since the start of a data set's run, of an instant on a server's clock: all servers
-/// stand on the wall clock of the recorder's host.
-class RunClock {
- public:
-  /// InvalidData where the recording's times are not those of a host.
-  static Result<RunClock> Of(const recording::RecordedServer& server, std::int64_t zero_wall_ns);
-  /// NaN for an instant to which no clock comes.
-  double operator()(std::int64_t host_ns) const;
-
- private:
-  std::int64_t offset_ns_ = 0;
-};
 
 /// The samples of devices, a table for each of what they are: a Wiimote and its Nunchuk have one
 /// each, and so has each hand that a tracker sees. They are named by their roles, of another rig

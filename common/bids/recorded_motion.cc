@@ -6,18 +6,13 @@
 
 #include "common/bids/character_tables.h"
 #include "common/bids/device_tables.h"
-#include "common/units/instant.h"
+#include "common/bids/run_clock.h"
 
 namespace footing::bids {
 namespace {
 
 using recording::RecordedServer;
 using v1::Tick;
-
-std::int64_t WallOf(const RecordedServer& server, std::int64_t host_ns) {
-  const bool known = IsInstant(server.wall_time_ns) && IsInstant(server.host_ns);
-  return known ? host_ns + server.wall_time_ns - server.host_ns : 0;
-}
 
 class Reader {
  public:
@@ -48,7 +43,7 @@ class Reader {
     std::optional<std::int64_t> first_ns;
     for (const RecordedServer& server : session.servers()) {
       for (const recording::RecordedTick& tick : server.ticks) {
-        const std::int64_t wall_ns = WallOf(server, tick.host_ns);
+        const std::int64_t wall_ns = WallNs(server, tick.host_ns);
         first_ns = std::min(first_ns.value_or(wall_ns), wall_ns);
       }
     }
@@ -65,13 +60,17 @@ class Reader {
     const auto ticks = ReadTicks(server, {Tick::kSkeletonsFieldNumber, Tick::kCharactersFieldNumber,
                                           Tick::kEventsFieldNumber, Tick::kConfigFieldNumber});
     if (!ticks) return ticks.error();
+    std::optional<RunClock> clock;
     for (const Tick& tick : *ticks) {
       if (tick.has_config()) motion_.config = tick.config().json();
       const bool chosen = IsChosen(tick);
-      if (chosen && !zero_wall_ns_) zero_wall_ns_ = WallOf(server, tick.host_ns());
+      if (chosen && !zero_wall_ns_) zero_wall_ns_ = WallNs(server, tick.host_ns());
       if (!zero_wall_ns_) continue;
-      const auto clock = RunClock::Of(server, *zero_wall_ns_);
-      if (!clock) return clock.error();
+      if (!clock) {
+        const auto of_server = RunClock::Of(server, *zero_wall_ns_);
+        if (!of_server) return of_server.error();
+        clock = *of_server;
+      }
       if (chosen) characters_.Add((*clock)(tick.host_ns()), tick);
       AddEvents(tick, *clock, choice_.undone, motion_.events);
     }

@@ -110,14 +110,17 @@ ordered_json Column(const std::string& description, const std::string& units) {
   return column;
 }
 
-ordered_json EventsCodebook() {
-  return {{"onset", Column("On the time of the channel latency", "s")},
-          {"duration", Column("0: an instant", "s")},
-          {"trial_type",
-           Column("trial_ready, trial_running (start line), trial_finished (finish line), "
-                  "trial_stopped; failure_KIND; put_back, put_back_by_operator; task_done; "
-                  "gait_NAME: the character has changed to this gait")},
-          {"counts", Column("no: a failure that was undone, by mistake of the detection")}};
+std::vector<File> EventFiles(const std::vector<Event>& events, const std::string& stem) {
+  const ordered_json codebook = {
+      {"onset", Column("On the time of the channel latency", "s")},
+      {"duration", Column("0: an instant", "s")},
+      {"trial_type",
+       Column("trial_ready, trial_running (start line), trial_finished (finish line), "
+              "trial_stopped; failure_KIND; put_back, put_back_by_operator; task_done; "
+              "gait_NAME: the character has changed to this gait")},
+      {"counts", Column("no: a failure that was undone, by mistake of the detection")}};
+  return {{stem + "_events.tsv", EventsTsv(events)},
+          {stem + "_events.json", codebook.dump(2) + "\n"}};
 }
 
 std::vector<File> MotionFiles(const MotionTable& table, const std::string& stem,

@@ -65,8 +65,8 @@ std::vector<File> MotionFiles(const MotionTable& table, const std::string& stem,
 File DescriptionFile(const std::string& name, const std::string& program,
                      const std::string& version);
 std::string EventsTsv(const std::vector<Event>& events);
-/// What the columns of EventsTsv() mean.
-nlohmann::ordered_json EventsCodebook();
+/// STEM_events.tsv, and STEM_events.json that says what its columns mean.
+std::vector<File> EventFiles(const std::vector<Event>& events, const std::string& stem);
 /// A column of a codebook; without units where `units` is empty.
 nlohmann::ordered_json Column(const std::string& description, const std::string& units = "");
 

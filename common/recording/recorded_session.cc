@@ -92,7 +92,7 @@ class TickCollector {
   Result<void> Finish() {
     if (no_instant_ns_) {
       return InvalidData("a message has the time " + std::to_string(*no_instant_ns_) +
-                         " ns, to which no clock of a host comes");
+                         " ns, which no clock of a host can show");
     }
     for (auto& [server, ticks] : ticks_) {
       for (auto& [sequence, tick] : ticks) servers_[server].ticks.push_back(std::move(tick));

@@ -129,10 +129,8 @@ class BundleWriter {
     }
     file_of_[&trial] = stem + "_tracksys-*" + run + "_motion.tsv";
     ++report_.trials;
-    for (const auto& [end, text] :
-         {std::pair<std::string, std::string>("_events.tsv", bids::EventsTsv(tables->events)),
-          {"_events.json", Json(bids::EventsCodebook())}}) {
-      if (const auto done = Write(folder + stem + run + end, text); !done) return done.error();
+    for (const bids::File& file : bids::EventFiles(tables->events, stem + run)) {
+      if (const auto done = Write(folder + file.name, file.text); !done) return done.error();
     }
     return files;
   }
