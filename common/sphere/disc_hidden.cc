@@ -125,8 +125,9 @@ std::optional<StraightEdge> HiddenPart::Through() const {
   middle /= static_cast<double>(places.size());
   seen /= static_cast<double>(start_.edges.size());
   Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& place : places)
-    square += (place - middle) * (place - middle).transpose() / double(places.size());
+  for (const Eigen::Vector2d& place : places) {
+    square += (place - middle) * (place - middle).transpose() / static_cast<double>(places.size());
+  }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(square);
   if (axes.eigenvalues()[0] > std::pow(kStraightBlurs * blur, 2)) return std::nullopt;
