@@ -21,6 +21,37 @@ constexpr double kCutoffOfNewRate = 0.4;
 
 std::size_t Index(int value) { return static_cast<std::size_t>(value); }
 
+/// The rotations of a joint through the frames, a quaternion a column, signs continuous.
+Eigen::MatrixXd QuaternionsOf(const body::Joint& joint, const Motion& motion) {
+  Eigen::MatrixXd quaternions(4, motion.frames());
+  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    const Eigen::Quaterniond turned(JointRotation(joint, motion.q.col(frame)));
+    quaternions.col(frame) = turned.coeffs();
+    if (frame > 0 && quaternions.col(frame).dot(quaternions.col(frame - 1)) < 0) {
+      quaternions.col(frame) *= -1;
+    }
+  }
+  return quaternions;
+}
+
+/// Low-passes a motion whose angles are continuous.
+void LowPassPoses(double cutoff_hz, Motion& motion) {
+  if (motion.frames() == 0) return;
+  const Motion before = motion;
+  motion.q = LowPass(before.q, motion.rate_hz, cutoff_hz);
+  for (const body::Joint& joint : motion.skeleton.joints) {
+    if (joint.rotations.size() != 3) continue;
+    const Eigen::MatrixXd smooth = LowPass(QuaternionsOf(joint, before), motion.rate_hz, cutoff_hz);
+    Eigen::VectorXd q = before.q.col(0);
+    for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+      const Eigen::Quaterniond turned(Eigen::Vector4d(smooth.col(frame).normalized()));
+      // Turns that cancel each other within the filter's time leave no rotation.
+      if (smooth.col(frame).norm() > 0.01) SetJointRotation(joint, turned.toRotationMatrix(), q);
+      motion.q.col(frame).segment<3>(joint.first_dof) = q.segment<3>(joint.first_dof);
+    }
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd NearestPose(const body::Skeleton& skeleton, const Eigen::VectorXd& q,
@@ -58,7 +89,7 @@ Motion Canonical(Motion motion) {
 
 Motion Smoothed(const Motion& motion, double cutoff_hz) {
   Motion smooth = Continuous(motion);
-  smooth.q = LowPass(smooth.q, smooth.rate_hz, cutoff_hz);
+  LowPassPoses(cutoff_hz, smooth);
   return smooth;
 }
 
@@ -66,9 +97,7 @@ Motion Resampled(const Motion& motion, double rate_hz) {
   FOOTING_CHECK(IsRate(rate_hz));
   Motion out = Continuous(motion);
   if (rate_hz == motion.rate_hz) return out;
-  if (rate_hz < motion.rate_hz) {
-    out.q = LowPass(out.q, motion.rate_hz, kCutoffOfNewRate * rate_hz);
-  }
+  if (rate_hz < motion.rate_hz) LowPassPoses(kCutoffOfNewRate * rate_hz, out);
   const Spline spline(std::move(out.q), motion.rate_hz);
   const double span_s = static_cast<double>(motion.frames() - 1) / motion.rate_hz;
   const auto frames = static_cast<Eigen::Index>(std::floor(span_s * rate_hz + 1e-9)) + 1;

@@ -22,8 +22,9 @@ Motion Continuous(Motion motion);
 /// same angles whatever whole turns and triples its file has them with.
 Motion Canonical(Motion motion);
 
-/// Smoothed by LowPass (signal.h), angles made continuous first. About 8 Hz for daily movement, 14
-/// for jumps.
+/// Smoothed by LowPass (signal.h). About 8 Hz for daily movement, 14 for jumps. The rotations of
+/// joints with three angles are smoothed as quaternions: near the singular pose of three angles a
+/// small rotation is large changes of two of them, which smoothed apart mean another pose.
 Motion Smoothed(const Motion& motion, double cutoff_hz);
 
 /// At another rate, by a spline; a lower rate is low-passed at 0.4 of it first.

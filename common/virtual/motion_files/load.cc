@@ -14,6 +14,7 @@
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/c3d.h"
 #include "common/virtual/motion/edit.h"
+#include "common/virtual/motion/half_turns.h"
 #include "common/virtual/motion/marker_fit.h"
 #include "common/virtual/motion/trc.h"
 
@@ -102,7 +103,7 @@ Result<LoadedMotion> FromBvh(const std::string& text, const std::string& path,
                              std::optional<double> unit_m) {
   auto motion = motion::ParseBvh(text, path, {.unit_m = unit_m.value_or(0.01)});
   if (!motion) return motion.error();
-  motion::Motion canonical = motion::Canonical(*std::move(motion));
+  motion::Motion canonical = motion::Canonical(motion::WithoutHalfTurns(*std::move(motion)));
   if (unit_m) return LoadedMotion{std::move(canonical), "", std::nullopt};
   return InLikelyUnit(std::move(canonical), path);
 }
@@ -127,7 +128,8 @@ Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& opti
   if (!asf) return asf.error();
   auto motion = motion::ParseAmc(*text, path, *asf, options.amc_rate_hz);
   if (!motion) return motion.error();
-  return LoadedMotion{motion::Canonical(*std::move(motion)), "", std::nullopt};
+  return LoadedMotion{motion::Canonical(motion::WithoutHalfTurns(*std::move(motion))), "",
+                      std::nullopt};
 }
 
 Result<motion::MarkerTracks> LoadMarkers(const std::string& path) {

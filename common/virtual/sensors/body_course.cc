@@ -6,7 +6,7 @@
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
 #include "common/text/quantile.h"
-#include "common/virtual/motion/signal.h"
+#include "common/virtual/motion/edit.h"
 #include "common/virtual/sensors/derivative.h"
 
 namespace footing::virtual_sensors {
@@ -62,7 +62,7 @@ BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double c
     for (auto& point : foot) point.resize(3, n);
   if (n == 0) return course;
 
-  const Eigen::MatrixXd q = motion::LowPass(motion.q, motion.rate_hz, cutoff_hz);
+  const Eigen::MatrixXd q = motion::Smoothed(motion, cutoff_hz).q;
   const Eigen::MatrixXd q_dot = Derivative(q, motion.rate_hz);
   body::Kinematics at(body.skeleton);
   body::JointVelocities velocities(body.skeleton);

@@ -66,6 +66,30 @@ TEST(Edit, CanonicalAnglesAreTheSameHoweverTheyWereWritten) {
   EXPECT_LT((Canonical(plain).q - plain.q).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST(Edit, SmoothingKeepsASlowTurnThroughASingularPose) {
+  Motion motion = Swinging(120, 2);
+  const auto landmarks = body::FindLandmarks(motion.skeleton).value();
+  const body::Joint& hip = motion.skeleton.joint(landmarks[body::Landmark::kLeftHip]);
+  ASSERT_EQ(hip.rotations.size(), 3u);
+  // Middle angles of a quarter turn, nearly, are where the other two mean the same.
+  Eigen::VectorXd singular = Eigen::VectorXd::Zero(motion.skeleton.dof);
+  singular(hip.first_dof + 1) = kPi / 2 - 0.02;
+  const Eigen::Matrix3d middle = JointRotation(hip, singular);
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    const double turn_rad = 0.6 * std::sin(kPi * static_cast<double>(i) / 120);
+    const Eigen::AngleAxisd turned(turn_rad, Eigen::Vector3d(1, 2, 3).normalized());
+    motion.q.col(i) = i > 0 ? motion.q.col(i - 1) : singular;
+    SetJointRotation(hip, middle * turned.toRotationMatrix(), motion.q.col(i));
+  }
+  const Motion smooth = Smoothed(motion, 6);
+  const Motion fast = Resampled(motion, 60);
+  for (Eigen::Index i = 12; i < motion.frames() - 12; ++i) {
+    EXPECT_LT(Largest(Places(smooth, i), Places(motion, i)), 0.002) << i;
+    if (i % 2 != 0) continue;
+    EXPECT_LT(Largest(Places(fast, i / 2), Places(motion, i)), 0.002) << i;
+  }
+}
+
 TEST(Edit, ResamplingKeepsPlacesInTime) {
   const Motion motion = Swinging(120, 2);
   const Motion slow = Resampled(motion, 60);
