@@ -216,9 +216,10 @@ def main():
         stage.start("footing-sim", "--engine", "pose")
         stage.wait_for_socket(stage.simulation)
         stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "move")
+        # On a busy machine a view may end before a server has answered it: with 3, and then the next one asks.
         stage.wait_for(lambda: json.loads(subprocess.run(
-            [binaries / "footing-view", "--text", "--seconds", "2", "--json"], env=environment, check=True,
-            capture_output=True, text=True).stdout).get("calibrated"), "the T-pose", timeout_s=90)
+            [binaries / "footing-view", "--text", "--seconds", "2", "--json"], env=environment, check=False,
+            capture_output=True, text=True).stdout or "{}").get("calibrated"), "the T-pose", timeout_s=90)
         record(folder, environment, binaries, "session.mcap", 3)
         for command in [one for one in runnable if POSE_ENGINE.search(one)]:
             try_out(command)
