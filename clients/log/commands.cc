@@ -11,6 +11,7 @@
 #include "clients/log/export_bodies.h"
 #include "clients/log/export_csv.h"
 #include "clients/log/export_xdf.h"
+#include "clients/log/output_folder.h"
 #include "clients/log/record.h"
 #include "common/cli/cli.h"
 #include "common/recording/repair.h"
@@ -228,7 +229,9 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
       "--task", of_bids->task,
       "With bids: label of the task, letters and digits (default: the file's name)");
   command->add_flag("--force", of_bids->replace, "Overwrite existing files");
-  command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *of_bids), shared); });
+  command->callback([=, &shared] {
+    Finish(RunExport(*file, *format, WithoutEndSlashes(*folder), *of_bids), shared);
+  });
 }
 
 void AddRepairCommand(CLI::App& app, Shared& shared) {

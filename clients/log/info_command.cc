@@ -6,6 +6,7 @@
 #include "clients/log/commands.h"
 #include "clients/log/contents.h"
 #include "common/cli/cli.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 
 namespace footing::log_client {
@@ -89,7 +90,7 @@ void PrintText(const Contents& contents) {
   std::cout << contents.path << ": " << contents.bytes << " bytes, written by " << contents.library
             << "\n"
             << (contents.end.complete ? "complete" : "NOT COMPLETE: " + contents.end.problem)
-            << ", " << SecondsBetween(contents.start_ns, contents.end_ns) << " s, "
+            << ", " << text::Fixed(SecondsBetween(contents.start_ns, contents.end_ns), 1) << " s, "
             << contents.messages << " messages, "
             << (!contents.simulated   ? "not said whether simulated"
                 : *contents.simulated ? "SIMULATED"
@@ -101,8 +102,10 @@ void PrintText(const Contents& contents) {
   }
   std::cout << "\n";
   for (const Topic& topic : contents.topics) {
-    std::cout << "  " << topic.name << "  " << topic.messages << " messages  " << topic.RateHz()
-              << " Hz  " << topic.schema << "\n";
+    std::cout << "  " << topic.name << "  " << topic.messages
+              << (topic.messages == 1 ? " message  " : " messages  ");
+    if (topic.RateHz() > 0) std::cout << text::Fixed(topic.RateHz(), 1) << " Hz  ";
+    std::cout << topic.schema << "\n";
   }
   for (const std::string& config : contents.configs) PrintConfig(config);
   for (const AttachmentNote& attachment : contents.attachments) {

@@ -16,4 +16,10 @@ inline Result<void> MakeFolder(const std::string& folder) {
   return {};
 }
 
+/// The folder as a shell's completion leaves it, without the slashes at its end.
+inline std::string WithoutEndSlashes(std::string folder) {
+  while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+  return folder;
+}
+
 }  // namespace footing::log_client

@@ -7,16 +7,14 @@
 #include "clients/study/report/analysis.h"
 #include "clients/study/report/page.h"
 #include "common/recording/output_file.h"
-#include "common/statistics/analysis.h"
+#include "common/statistics_options/statistics_options.h"
 
 namespace footing::study {
 namespace {
 
 struct ReportOptions {
   ProtocolOptions protocol;
-  std::string alternative = "two.sided";
-  std::string ties = "pairwise";
-  std::string method;
+  statistics_options::Options tests{"two.sided", "pairwise", ""};
   std::optional<std::uint64_t> seed;
   std::string out;
   bool force = false;
@@ -41,13 +39,8 @@ Result<Analysed> ReadAndAnalyze(const ReportOptions& options) {
   if (!loaded) return loaded.error();
   auto people = ReadPeople(*loaded);
   if (!people) return people.error();
-  report::TestOptions tests;
-  tests.alternative = statistics::Named(options.alternative, statistics::kAlternatives);
-  tests.ties = statistics::Named(options.ties, statistics::kAllTies);
-  if (!options.method.empty()) {
-    tests.method = statistics::Named(options.method, statistics::kMethods);
-  }
-  tests.seed = options.seed;
+  const auto chosen = statistics_options::ChosenIn(options.tests);
+  const report::TestOptions tests{chosen.alternative, chosen.ties, chosen.method, options.seed};
   report::Analysis analysis = report::Analyze(loaded->protocol, *people, tests);
   return Analysed{std::move(*loaded), std::move(*people), std::move(analysis)};
 }
@@ -75,20 +68,9 @@ Result<Answer> Report(const ReportOptions& options) {
 }
 
 void AddTestOptions(CLI::App& command, ReportOptions& options) {
-  using statistics::NamesOf;
-  command
-      .add_option("--alternative", options.alternative,
-                  "Differences to look for: any, or values greater or less than the control's")
-      ->check(CLI::IsMember(NamesOf(statistics::kAlternatives)));
-  command
-      .add_option("--ties", options.ties,
-                  "Ties that Steel's deviation allows for: of the two groups compared, or of all "
-                  "groups (default pairwise)")
-      ->check(CLI::IsMember(NamesOf(statistics::kAllTies)));
-  command
-      .add_option("--method", options.method,
-                  "Source of Steel's p (default: exact where feasible, otherwise permutation)")
-      ->check(CLI::IsMember(NamesOf(statistics::kMethods)));
+  statistics_options::Add(command, options.tests,
+                          "Source of Steel's p (default: exact where feasible, otherwise "
+                          "permutation)");
   command.add_option("--seed", options.seed,
                      "Seed of the random permutations (default: the protocol's)");
 }

@@ -87,7 +87,8 @@ Result<Answer> Simulate(const SimulateOptions& given) {
     if (!one.before) simulated_s += one.simulated_s;
   }
   answer.json["simulated_s"] = simulated_s;
-  answer.text = loaded->folder + ": " + std::to_string(times->size()) + " sessions; simulated " +
+  answer.text = loaded->folder + ": " + std::to_string(times->size()) +
+                (times->size() == 1 ? " session" : " sessions") + "; simulated " +
                 text::Fixed(simulated_s, 0) + " s in " + text::Fixed(took_s, 0) + " s";
   if (const auto done = AddLatency(*loaded, answer); !done) return done.error();
   return answer;

@@ -1,6 +1,7 @@
 #include "common/device_link/device_link.h"
 
 #include <chrono>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -15,6 +16,12 @@ namespace {
 
 constexpr auto kRedial = std::chrono::milliseconds(250);
 constexpr std::uint32_t kMaxEnvelopeBytes = 2048;
+
+/// The command that starts a footingd which listens there: by default it does at the user's own.
+std::string FootingdFor(const transport::Address& to) {
+  const bool own = to.Text() == transport::DefaultAddress("devices").Text();
+  return own ? "footingd" : "footingd --source stream:" + to.Text();
+}
 
 }  // namespace
 
@@ -84,8 +91,7 @@ class DeviceLink::Implementation : public std::enable_shared_from_this<Implement
 
   void WaitFor(const std::string& why) {
     if (why != waits_for_) {
-      log::Info("waiting for footingd: " + why +
-                "; start it with: footingd --source stream:" + options_.to.Text());
+      log::Info("waiting for footingd: " + why + "; start it with: " + FootingdFor(options_.to));
     }
     waits_for_ = why;
     redial_.expires_after(kRedial);
@@ -123,7 +129,7 @@ std::uint64_t DeviceLink::dropped() const { return implementation_->dropped(); }
 
 Error NoFootingd(const transport::Address& to) {
   return NoDevice("no footingd listened for devices on " + to.Text() +
-                  "; start it with: footingd --source stream:" + to.Text());
+                  "; start it with: " + FootingdFor(to));
 }
 
 }  // namespace footing::device_link

@@ -74,6 +74,8 @@ class Connection:
         if kind == "unix":
             self.socket = socket.socket(socket.AF_UNIX)
             self.socket.connect(place)
+        elif kind != "tcp":
+            raise ValueError("not unix:PATH or tcp:HOST:PORT, which is all that this example speaks")
         else:
             host, _, port = place.rpartition(":")
             self.socket = socket.create_connection((host, int(port)))
@@ -99,7 +101,7 @@ class Connection:
         while len(data) < size:
             piece = self.socket.recv(size - len(data))
             if not piece:
-                raise ConnectionError("footingd closed the connection")
+                raise ConnectionError("the server closed the connection")
             data += piece
         return data
 
@@ -161,10 +163,13 @@ def default_address(server):
     return f"unix:{folder}/{server}.sock"
 
 
-def exit_code_of(address, work):
+def exit_code_of(address, program, work):
     """Does the work until its end or Ctrl-C; an error is printed."""
     try:
         work()
+    except (FileNotFoundError, ConnectionRefusedError):
+        print(f"error: {address}: no server listens there; start {program}, or name its address", file=sys.stderr)
+        return 1
     except (OSError, ValueError) as error:
         print(f"error: {address}: {error}", file=sys.stderr)
         return 1
@@ -180,7 +185,7 @@ def main():
     parser.add_argument("--samples", type=int, default=1 << 62,
                         help="number of rows to print (default: until Ctrl-C)")
     arguments = parser.parse_args()
-    return exit_code_of(arguments.address, lambda: run(arguments.address, arguments.samples))
+    return exit_code_of(arguments.address, "footingd", lambda: run(arguments.address, arguments.samples))
 
 
 if __name__ == "__main__":

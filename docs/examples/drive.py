@@ -97,7 +97,7 @@ def main():
     parser.add_argument("address", nargs="?", default=default_address("simulation"),
                         help="address of footing-sim (default %(default)s)")
     arguments = parser.parse_args()
-    return exit_code_of(arguments.address, lambda: run(arguments.address))
+    return exit_code_of(arguments.address, "footing-sim", lambda: run(arguments.address))
 
 
 if __name__ == "__main__":

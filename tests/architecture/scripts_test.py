@@ -2,9 +2,11 @@
 
 Usage: scripts_test.py SOURCE_ROOT
 """
+import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
@@ -38,6 +40,25 @@ class Scripts(unittest.TestCase):
         done = run(ROOT / "scripts/install-dependencies", "nowhere.txt")
         self.assertEqual(done.returncode, 2, done)
         self.assertIn("error: no list nowhere.txt; there are:", done.stderr)
+
+    def test_what_will_be_downloaded_is_said_before_the_wait(self):
+        apt = """#!/bin/bash
+echo "apt-get $*" >&2
+[[ " $* " != *" --assume-no "* ]] || { echo "Need to get 9 MB of archives."; exit 1; }
+"""
+        with tempfile.TemporaryDirectory(prefix="footing-scripts.") as name:
+            folder = pathlib.Path(name)
+            (folder / "list.txt").write_text("some-package\n")
+            for program, text in (("apt-get", apt), ("dpkg-query", "#!/bin/sh\n"), ("id", "#!/bin/sh\necho 0\n")):
+                (folder / program).write_text(text)
+                (folder / program).chmod(0o755)
+            done = subprocess.run([ROOT / "scripts/install-dependencies", folder / "list.txt"], capture_output=True,
+                                  text=True, check=False, env=dict(os.environ, PATH=f"{folder}:{os.environ['PATH']}"))
+        self.assertEqual(done.returncode, 0, done)
+        said = done.stderr.splitlines()
+        self.assertEqual(said[0], "Installing 1 packages: some-package")
+        self.assertLess(said.index("Need to get 9 MB of archives."),
+                        next(i for i, line in enumerate(said) if " install -y " in line), said)
 
 
 if __name__ == "__main__":

@@ -106,6 +106,10 @@ def no_server(stage):
            f"unix:{stage.folder}/edge.sock", "--seconds", 1)
     starts_it = f"footingd --source stream:{nobody}"
     expect(stage, NO_DEVICE, starts_it, "footing-stream", "user", "--script", "walk", "--to", nobody, "--seconds", 1)
+    # A footingd without options listens at the user's own address.
+    done = stage.run("/usr/bin/env", f"XDG_RUNTIME_DIR={stage.folder}/nobody", stage.binaries / "footing-stream", "user",
+                     "--script", "walk", "--seconds", 1)
+    assert done.returncode == NO_DEVICE and done.stderr.endswith("; start it with: footingd\n"), done
     expect(stage, NO_DEVICE, starts_it, "footing-skeleton", "--listen", "127.0.0.1:0", "--to", nobody, "--seconds", 1)
     assert stage.run("footing-skeleton", "--listen", "127.0.0.1:0", "--no-publish", "--seconds", 1).returncode == 0
 

@@ -29,7 +29,9 @@ def rows_of(stage, samples):
 def main():
     with Stage(sys.argv[1]) as stage:
         absent = client(stage.sensor)
-        assert absent.returncode == 1 and "error:" in absent.stderr, absent
+        assert absent.returncode == 1 and "error:" in absent.stderr and "start footingd" in absent.stderr, absent
+        unspoken = client("tls:127.0.0.1:7431")
+        assert unspoken.returncode == 1 and "not unix:PATH or tcp:HOST:PORT" in unspoken.stderr, unspoken
 
         stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
         stage.wait_for_socket(stage.sensor)

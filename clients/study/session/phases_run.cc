@@ -174,7 +174,7 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   if (!servers) return servers.error();
   const std::size_t attempt = ++progress_.attempts[phase.id];
   shown_.attempt = static_cast<std::uint32_t>(attempt);
-  Show("The trial goes on.", "s stops it, u undoes the newest failure");
+  Show("The trial is running.", "s stops it, u undoes the latest failure");
   events_.reset();
   events_ = std::make_unique<TrialEvents>(
       context_, **servers,

@@ -140,7 +140,7 @@ class TrialRun {
       context_.console.ReadKeys(true);
       context_.console.Print(id_ + " on track " + phase_.track +
                              (phase_.task.empty() ? "" : ", task " + phase_.task) +
-                             ". Keys: s stops the trial, u undoes the newest failure.");
+                             ". Keys: s stops the trial, u undoes the latest failure.");
     }
     return {};
   }

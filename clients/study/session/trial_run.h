@@ -13,7 +13,7 @@ namespace footing::study {
 
 /// Runs one attempt at a trial: begins the recording and the trial, writes every failure into the
 /// journal, and ends both. Returns the outcome: "finished", "timed_out" or "stopped". Keys during
-/// an attended trial: s stops it, u undoes the newest failure. `events` carries the trial's id and
+/// an attended trial: s stops it, u undoes the latest failure. `events` carries the trial's id and
 /// goes on listening to corrections.
 Result<std::string> RunTrial(SessionContext& context, Servers& servers, const ActiveTime& active,
                              TrialEvents& events, const plan::Phase& phase, std::size_t attempt);

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -15,8 +16,10 @@
 #include "clients/study/journal/journal.h"
 #include "clients/study/journal/lock.h"
 #include "clients/study/journal/study_folder.h"
+#include "clients/study/simulate/progress_text.h"
 #include "clients/study/simulate/simulated_session.h"
 #include "common/cli/cli.h"
+#include "common/clock/clock.h"
 #include "common/units/units.h"
 
 namespace footing::study::simulate {
@@ -56,14 +59,17 @@ Result<void> SimulateOne(const StudyOptions& options, const plan::Session& sessi
 /// Runs each session in a process of its own.
 class Jobs {
  public:
-  explicit Jobs(const StudyOptions& options) : options_(options) {}
+  Jobs(const StudyOptions& options, std::size_t sessions) : options_(options) {
+    progress_.all = static_cast<int>(sessions);
+    progress_.at_once = options.jobs;
+  }
 
   Result<void> Start(const plan::Session& session) {
     while (static_cast<int>(running_.size()) >= options_.jobs) WaitForOne();
     const pid_t process = ::fork();
     if (process < 0) return Failure(std::string("fork: ") + std::strerror(errno));
     if (process > 0) {
-      running_[process] = session.participant;
+      running_[process] = {session.participant, clock::MonotonicNs()};
       return {};
     }
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -85,13 +91,23 @@ class Jobs {
     const auto job = running_.find(process);
     if (job == running_.end()) return;
     const bool ok = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    std::cerr << job->second << (ok ? ": finished" : ": failed") << std::endl;
-    if (!ok) failed_.push_back(job->second);
+    took_s_ += NanosecondsToSeconds(clock::MonotonicNs() - job->second.begin_ns);
+    progress_.mean_s = took_s_ / ++progress_.ended;
+    std::cerr << job->second.participant << (ok ? ": finished" : ": failed")
+              << ProgressText(progress_) << std::endl;
+    if (!ok) failed_.push_back(job->second.participant);
     running_.erase(job);
   }
 
+  struct Job {
+    std::string participant;
+    std::int64_t begin_ns = 0;
+  };
+
   const StudyOptions& options_;
-  std::map<pid_t, std::string> running_;
+  std::map<pid_t, Job> running_;
+  StudyProgress progress_;
+  double took_s_ = 0;  // All that have ended, together.
   std::vector<std::string> failed_;
 };
 
@@ -118,7 +134,7 @@ Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options) {
       due.push_back(&session);
     }
   }
-  Jobs jobs(options);
+  Jobs jobs(options, due.size());
   for (const plan::Session* session : due) {
     if (const auto done = jobs.Start(*session); !done) return done.error();
   }

@@ -20,7 +20,7 @@ std::string StudyClock(const stream::StudyState& study, double passed_s);
 /// "next: wrist.straight2; in motion so far 12.5 min".
 std::string StudyNext(const stream::StudyState& study);
 
-/// "keys: s stops it, u undoes the newest failure"; empty without any.
+/// "keys: s stops it, u undoes the latest failure"; empty without any.
 std::string StudyKeys(const stream::StudyState& study);
 
 /// All of it, a line each.

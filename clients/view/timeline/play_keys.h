@@ -52,11 +52,11 @@ inline constexpr std::array<PlayKey, 15> kPlayKeys{{
 
 /// Lines for the list of keys: the keys and what they do.
 inline constexpr std::array<std::array<const char*, 2>, 9> kPlayKeyHelp{{
-    {"space", "pause, or play on"},
-    {"left, right", "1 s back, 1 s on"},
-    {", and .", "one frame back, one on"},
+    {"space", "pause or continue"},
+    {"left, right", "1 s back, 1 s forward"},
+    {", and .", "one frame back, one forward"},
     {"up, down", "faster, slower: 0.1 to 8; also + and -"},
-    {"N, P", "the next failure, the one before"},
+    {"N, P", "next failure, previous failure"},
     {"T", "the next trial"},
     {"Home, End", "the beginning, the end"},
     {"L", "show or hide the timeline"},

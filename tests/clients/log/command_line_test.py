@@ -35,11 +35,14 @@ def main(program, writer):
         report = json.loads(repair.stdout)
         assert report["messages_kept"] == 307 and not report["was_complete"], report
         assert run("repair", cut, "--out", repaired).returncode == 2
-        assert run("info", repaired).returncode == 0
+        info = run("info", repaired)
+        assert info.returncode == 0 and ".0 Hz  footing.v1." in info.stdout, info
+        assert " 1 messages" not in info.stdout and " 0 Hz" not in info.stdout, info
         export = run("export", repaired, "--format", "csv", "--out", folder / "csv", "--json")
         assert export.returncode == 0 and len(json.loads(export.stdout)["files"]) == 3, export
 
-        export = run("export", repaired, "--format", "csv", "--out", folder / "csv", "--force")
+        export = run("export", repaired, "--format", "csv", "--out", f"{folder / 'csv'}/", "--force")
+        assert f"path {folder}/csv/footing" in export.stdout, export  # Not two slashes.
         lines = export.stdout.splitlines()  # A line for each file, not one of JSON.
         assert sum(".csv  rows " in line for line in lines) == 3 and "{" not in export.stdout, export
 

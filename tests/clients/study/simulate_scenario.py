@@ -68,6 +68,7 @@ def main():
         # A line for each phase, so that whoever waits sees it go on.
         phases = [one for one in journal(stage, "b", "P02") if one["event"] == "phase_started"]
         assert len(phases) > 4 and all(f"P02: {one['phase']} begins after " in done.stderr for one in phases), done
+        assert "P02: finished, 1 of 1 session\n" in done.stderr, done
         assert undated(journal(stage, "b", "P02")) == undated(journal(stage, "a", "P02"))
         simulate(stage, "c", "--participant", "P02", "--seed", 2)
         other = undated(journal(stage, "c", "P02"))

@@ -19,7 +19,7 @@ stream::StudyState Trial() {
           .phase = "wrist.straight1",
           .number = 5,
           .phases = 23,
-          .doing = "The trial goes on.",
+          .doing = "The trial is running.",
           .next = "wrist.straight2",
           .keys = "s stops it",
           .active_s = 750,
@@ -28,7 +28,7 @@ stream::StudyState Trial() {
 
 TEST(StudyText, SaysWhoWhereWhatAndWhatNext) {
   EXPECT_THAT(StudyLines(Trial(), 0),
-              ElementsAre("P07, wrist.straight1, attempt 2 (5 of 23)", "The trial goes on.",
+              ElementsAre("P07, wrist.straight1, attempt 2 (5 of 23)", "The trial is running.",
                           "next: wrist.straight2; in motion so far 12.5 min", "keys: s stops it"));
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/units/units.h"
+#include "tests/common/move_calibrations.h"
 
 namespace footing::calibration {
 namespace {
@@ -20,30 +21,6 @@ using MoveBytes = std::vector<std::uint8_t>;
 
 constexpr double kMoveG = kStandardGravityMps2;
 
-// Real units, from the moveonpc wiki ("Calibration data", "Calibration data CECH-ZCM2").
-const std::vector<MoveBytes> kZcm1 = {
-    {0x10, 0x00, 0x46, 0x07, 0x73, 0x7f, 0x9f, 0x7f, 0xe8, 0x8f, 0x85, 0x6e, 0xca,
-     0x7f, 0xf4, 0x7e, 0x55, 0x7f, 0xf1, 0x7f, 0x1a, 0x6e, 0x98, 0x90, 0x0a, 0x80,
-     0x5b, 0x7f, 0x67, 0x7f, 0xc9, 0x90, 0x4c, 0x7f, 0xb7, 0x7f, 0xe6, 0x6e, 0x06,
-     0x7f, 0x87, 0x08, 0xa5, 0x7f, 0x06, 0x80, 0x80, 0x81, 0x76},
-    {0x10, 0x01, 0x07, 0xa8, 0x7f, 0x00, 0x80, 0x8b, 0x81, 0x00, 0x00, 0x00, 0x00,
-     0x00, 0x00, 0x00, 0x01, 0x00, 0x01, 0x92, 0x08, 0xe0, 0x01, 0xe5, 0x94, 0xe6,
-     0x7f, 0xa1, 0x81, 0xe0, 0x01, 0x4b, 0x7f, 0xd6, 0x91, 0x59, 0x81, 0xe0, 0x01,
-     0xa1, 0x7f, 0x2c, 0x80, 0xa6, 0x95, 0x89, 0x07, 0x36, 0x0c},
-    {0x10, 0x82, 0x50, 0xc3, 0x5b, 0xc8, 0xfb, 0x42, 0x68, 0x3d, 0xb5, 0x42, 0xcd,
-     0x13, 0x7d, 0x3f, 0x93, 0x5b, 0x81, 0x3f, 0x70, 0xea, 0x76, 0x3f, 0xff, 0x80,
-     0x4f, 0x3f, 0xc6, 0xea, 0x9c, 0x3d, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
-     0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}};
-const std::vector<MoveBytes> kZcm2 = {
-    {0x10, 0x00, 0x22, 0x10, 0xfd, 0xff, 0x3c, 0x00, 0x1b, 0xf0, 0x07, 0x00, 0xd3,
-     0xff, 0x2a, 0x00, 0x07, 0x10, 0xe2, 0xff, 0x15, 0x00, 0x04, 0xf0, 0x11, 0x00,
-     0xf9, 0xff, 0x0a, 0x00, 0xfe, 0x0f, 0x46, 0x00, 0xdc, 0xff, 0xd6, 0xef, 0xfb,
-     0xff, 0x07, 0x00, 0xff, 0xff, 0x9c, 0x00, 0x00, 0x00, 0x00},
-    {0x10, 0x81, 0x1a, 0x05, 0x00, 0x17, 0x00, 0x9b, 0xff, 0xac, 0x1a, 0x0d, 0x00,
-     0x5a, 0xff, 0x06, 0x00, 0x9a, 0x1a, 0x59, 0xe5, 0x08, 0x00, 0xe5, 0xff, 0x58,
-     0x00, 0x63, 0xe5, 0xef, 0xff, 0x81, 0x00, 0x06, 0x00, 0x62, 0xe5, 0x1c, 0x02,
-     0x1c, 0x02, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}};
-
 MoveBytes Join(MoveModel model, const std::vector<MoveBytes>& pieces) {
   MoveBlob blob(model);
   for (const MoveBytes& piece : pieces) EXPECT_TRUE(blob.Take(piece));
@@ -54,31 +31,31 @@ MoveBytes Join(MoveModel model, const std::vector<MoveBytes>& pieces) {
 TEST(MoveBlob, TakesPiecesInAnyOrderAndAgain) {
   MoveBlob blob(MoveModel::kZcm1);
   EXPECT_FALSE(blob.complete());
-  EXPECT_TRUE(blob.Take(kZcm1[2]));
-  EXPECT_TRUE(blob.Take(kZcm1[2]));
-  EXPECT_TRUE(blob.Take(kZcm1[0]));
+  EXPECT_TRUE(blob.Take(test::kRealZcm1[2]));
+  EXPECT_TRUE(blob.Take(test::kRealZcm1[2]));
+  EXPECT_TRUE(blob.Take(test::kRealZcm1[0]));
   EXPECT_FALSE(blob.complete());
-  EXPECT_TRUE(blob.Take(kZcm1[1]));
+  EXPECT_TRUE(blob.Take(test::kRealZcm1[1]));
   EXPECT_TRUE(blob.complete());
-  EXPECT_EQ(blob.bytes(), Join(MoveModel::kZcm1, kZcm1));
+  EXPECT_EQ(blob.bytes(), Join(MoveModel::kZcm1, test::kRealZcm1));
   EXPECT_EQ(blob.bytes().size(), 143u);
-  EXPECT_EQ(Join(MoveModel::kZcm2, kZcm2).size(), 96u);
+  EXPECT_EQ(Join(MoveModel::kZcm2, test::kRealZcm2).size(), 96u);
 }
 
 TEST(MoveBlob, LeavesAsideWhatIsNoPiece) {
   MoveBlob blob(MoveModel::kZcm2);
   EXPECT_FALSE(blob.Take(MoveBytes{}));
-  EXPECT_FALSE(blob.Take(MoveBytes(kZcm2[0].begin(), kZcm2[0].begin() + 48)));
-  EXPECT_FALSE(blob.Take(kZcm1[1])) << "middle piece of the other model";
-  EXPECT_FALSE(blob.Take(kZcm1[2])) << "last piece of the other model";
-  MoveBytes other = kZcm2[0];
+  EXPECT_FALSE(blob.Take(MoveBytes(test::kRealZcm2[0].begin(), test::kRealZcm2[0].begin() + 48)));
+  EXPECT_FALSE(blob.Take(test::kRealZcm1[1])) << "middle piece of the other model";
+  EXPECT_FALSE(blob.Take(test::kRealZcm1[2])) << "last piece of the other model";
+  MoveBytes other = test::kRealZcm2[0];
   other[0] = 0x11;
   EXPECT_FALSE(blob.Take(other));
   EXPECT_TRUE(blob.bytes().empty());
 }
 
 TEST(MoveCalibration, ReadsARealBlobOfTheFirstModel) {
-  const auto calibration = ParseMove(MoveModel::kZcm1, Join(MoveModel::kZcm1, kZcm1));
+  const auto calibration = ParseMove(MoveModel::kZcm1, Join(MoveModel::kZcm1, test::kRealZcm1));
   EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
   EXPECT_EQ(calibration.problem, "");
   // x: 0x6e85 and 0x9098, y: 0x6ee6 and 0x90c9, z: 0x6e1a and 0x8fe8; each less 0x8000.
@@ -92,7 +69,7 @@ TEST(MoveCalibration, ReadsARealBlobOfTheFirstModel) {
 }
 
 TEST(MoveCalibration, ReadsARealBlobOfTheSecondModel) {
-  const auto calibration = ParseMove(MoveModel::kZcm2, Join(MoveModel::kZcm2, kZcm2));
+  const auto calibration = ParseMove(MoveModel::kZcm2, Join(MoveModel::kZcm2, test::kRealZcm2));
   EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
   EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[0], 2 * kMoveG / (4130 + 4069));
   EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[2], 2 * kMoveG / (4094 + 4138));
@@ -102,7 +79,7 @@ TEST(MoveCalibration, ReadsARealBlobOfTheSecondModel) {
 }
 
 TEST(MoveCalibration, ABiasFactorThatIsNoNumberIsLeftOut) {
-  MoveBytes blob = Join(MoveModel::kZcm1, kZcm1);
+  MoveBytes blob = Join(MoveModel::kZcm1, test::kRealZcm1);
   for (const float factor : {std::numeric_limits<float>::quiet_NaN(),
                              std::numeric_limits<float>::infinity(), 0.f, -1.f, 1e30f}) {
     std::memcpy(blob.data() + 0x6a, &factor, sizeof factor);
@@ -121,8 +98,8 @@ TEST(MoveCalibration, UnusableBlobsGiveTypicalValuesAndTheReason) {
       EXPECT_GT(calibration.gyroscope_gain_radps[i], 0);
     }
   };
-  const MoveBytes first = Join(MoveModel::kZcm1, kZcm1);
-  const MoveBytes second = Join(MoveModel::kZcm2, kZcm2);
+  const MoveBytes first = Join(MoveModel::kZcm1, test::kRealZcm1);
+  const MoveBytes second = Join(MoveModel::kZcm2, test::kRealZcm2);
   refuse(MoveModel::kZcm1, {}, "not read");
   refuse(MoveModel::kZcm1, second, "cut short");
   refuse(MoveModel::kZcm2, first, "another model");

@@ -12,7 +12,7 @@ namespace {
 using preview::Sight;
 
 constexpr PanelHeight kCameraHeight{250, 350};
-constexpr float kTitleHeight = 22, kLineHeight = 17;
+constexpr float kTitleHeight = 22, kLineHeight = 17, kGapBelowPicture = 7;
 constexpr float kLeastRadius = 5;
 constexpr ImU32 kNoPicture = IM_COL32(8, 11, 15, 255), kVeil = IM_COL32(8, 11, 15, 190);
 
@@ -135,12 +135,13 @@ void DrawCameraPanel(const Paint& p, const Box& box, const scene::CameraPreview&
   // However many lines there are, half of the panel is the picture's.
   const auto most = static_cast<std::size_t>(std::max(0.0f, in.height() / 2 / (kLineHeight * s)));
   if (lines.size() > most) lines.resize(most);
-  const float text_height = kLineHeight * s * static_cast<float>(lines.size());
+  const float text_height =
+      lines.empty() ? 0 : (kGapBelowPicture + kLineHeight * static_cast<float>(lines.size())) * s;
   const Box space{{in.low.x, in.low.y + kTitleHeight * s}, {in.high.x, in.high.y - text_height}};
   p.list->AddRectFilled(space.low, space.high, kNoPicture, 4 * s);
   if (preview.picture && p.camera_picture != nullptr) DrawPicture(p, space, *preview.picture);
   if (!trouble.empty()) DrawTrouble(p, space, trouble);
-  float y = space.high.y + 2 * s;
+  float y = space.high.y + kGapBelowPicture * s;
   for (const ShownLine& line : lines) {
     p.Write(p.fonts.small, {in.low.x, y}, line.is_good ? colour::kText : colour::kWarning,
             line.text);

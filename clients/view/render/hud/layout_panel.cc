@@ -112,6 +112,19 @@ void DrawPoints(const Paint& p, const Plan& plan, const scene::CharacterPose& po
   p.list->AddCircle(com, 7 * p.scale, colour::kText, 24, 1.8f * p.scale);
 }
 
+void DrawLegend(const Paint& p, const Box& in) {
+  const float s = p.scale, y = in.high.y - 13 * s;
+  float x = in.low.x;
+  x += p.Write(p.fonts.small, {x, y}, colour::kFaint, "centre of") + 11 * s;
+  p.Dot({x, y + 7 * s}, 4.5f, kTotal);
+  x += 8 * s;
+  x += p.Write(p.fonts.small, {x, y}, colour::kFaint, "pressure") + 13 * s;
+  p.list->AddCircle({x, y + 7 * s}, 5 * s, colour::kText, 20, 1.5f * s);
+  x += 9 * s;
+  p.Write(p.fonts.small, {x, y}, colour::kFaint, "mass");
+  p.WriteRight(p.fonts.small, {in.high.x, y}, colour::kFaint, "front is up");
+}
+
 }  // namespace
 
 void DrawLayoutPanel(const Paint& p, const Box& box, const scene::Model& model,
@@ -134,12 +147,7 @@ void DrawLayoutPanel(const Paint& p, const Box& box, const scene::Model& model,
     DrawCells(p, plan, boards[side], kInks[side]);
   }
   DrawPoints(p, plan, pose);
-  const float y = in.high.y - 13 * s;
-  p.Dot({in.low.x + 5 * s, y + 7 * s}, 4.5f, kTotal);
-  p.Write(p.fonts.small, {in.low.x + 14 * s, y}, colour::kFaint, "COP");
-  p.list->AddCircle({in.low.x + 62 * s, y + 7 * s}, 5 * s, colour::kText, 20, 1.5f * s);
-  p.Write(p.fonts.small, {in.low.x + 72 * s, y}, colour::kFaint, "COM");
-  p.WriteRight(p.fonts.small, {in.high.x, y}, colour::kFaint, "forward is up");
+  DrawLegend(p, in);
 }
 
 }  // namespace footing::render

@@ -106,7 +106,7 @@ void DrawKeys(const Paint& p, ImVec2 size, bool playback) {
   static constexpr std::array<Line, 4> kAllKeys{{
       {"?", "show or hide this list"},
       {"F", "force arrows at the feet"},
-      {"O", "the reference beside the body, or over it"},
+      {"O", "the true pose beside the body, or over it"},
       {"Esc, Q", "quit"},
   }};
   std::vector<Line> keys{kAllKeys.begin(), kAllKeys.end() - 1};
@@ -123,7 +123,9 @@ void DrawKeys(const Paint& p, ImVec2 size, bool playback) {
   }
   const float height = (70 + 26 * static_cast<float>(keys.size())) * s;
   const ImVec2 low((size.x - width) / 2, (size.y - height) / 2);
-  const Box in = p.Panel({low, {low.x + width, low.y + height}});
+  const Box box{low, {low.x + width, low.y + height}};
+  p.list->AddRectFilled(box.low, box.high, colour::kBehindKeys, 10 * s);
+  const Box in = p.Panel(box);
   p.Write(p.fonts.strong, {in.low.x + 8 * s, in.low.y + 2 * s}, colour::kText, "Keys");
   float y = in.low.y + 36 * s;
   for (const auto& [key, what] : keys) {

@@ -44,6 +44,14 @@ std::string NewestOf(const scene::Strip& strip, std::int64_t now_ns, int decimal
   return scene::Fixed(factor * static_cast<double>(newest.value), decimals) + unit;
 }
 
+/// Roll and pitch, or one dash where either is unknown.
+std::string InclinationOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
+  const double degrees = RadiansToDegrees(1);
+  const std::string roll = NewestOf(d.roll_rad, now_ns, 0, degrees, "\xc2\xb0");
+  const std::string pitch = NewestOf(d.pitch_rad, now_ns, 0, degrees, "\xc2\xb0");
+  return roll == "-" || pitch == "-" ? "-" : roll + ", " + pitch;
+}
+
 /// The least of a few ranges that shows the strip whole; the last is the Wiimote's 3.6 g on all
 /// three axes at once, 9.81 * 3.6 * sqrt(3) m/s2.
 float RangeOf(const scene::Strip& magnitude) {
@@ -58,7 +66,6 @@ float RangeOf(const scene::Strip& magnitude) {
 }
 
 std::vector<Plot> PlotsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
-  const double degrees = RadiansToDegrees(1);
   const float range_mps2 = RangeOf(d.magnitude_mps2);
   return {
       {"acceleration",
@@ -84,11 +91,10 @@ std::vector<Plot> PlotsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
        1,
        {{&d.amplitude_mps2, colour::kGood, "", 2.0f}}},
       {"",
-       NewestOf(d.roll_rad, now_ns, 0, degrees, "\xc2\xb0, ") +
-           NewestOf(d.pitch_rad, now_ns, 0, degrees, "\xc2\xb0"),
+       InclinationOf(d, now_ns),
        static_cast<float>(-kPi / 2),
        static_cast<float>(kPi / 2),
-       degrees,
+       RadiansToDegrees(1),
        {{&d.roll_rad, colour::kAccent, "roll", 2.0f},
         {&d.pitch_rad, colour::kThird, "pitch", 2.0f}}},
   };

@@ -8,7 +8,9 @@
 namespace footing::render {
 namespace {
 
-constexpr float kSpaceForZero = 46;  // Height at which zero has a label of its own.
+constexpr float kSpaceForZero = 34;  // Height at which zero has a label of its own.
+constexpr float kLegendHeight = 15;
+constexpr float kLegendAboveFrom = 36;  // Height at which the words have a row of their own.
 constexpr double kGridS = 2;
 constexpr double kStripS = static_cast<double>(scene::kStripNs) * 1e-9;
 
@@ -68,18 +70,19 @@ void DrawAxes(const Paint& p, const Box& curves, const Plot& plot) {
 
 /// The title, in the curve's colour or followed by every curve's name in its own, and the value.
 void DrawLegend(const Paint& p, const Box& curves, const Plot& plot) {
-  const float s = p.scale, line = curves.low.y + 15 * s;
-  const bool one = plot.curves.size() == 1;
-  float width = p.WidthOf(p.fonts.small, plot.title) + 10 * s;
+  const float s = p.scale, line = curves.low.y + kLegendHeight * s;
+  const bool one = plot.curves.size() == 1, titled = *plot.title != '\0';
+  float names = titled ? 0 : -6 * s;
   if (!one) {
-    for (const Curve& curve : plot.curves) width += p.WidthOf(p.fonts.small, curve.name) + 6 * s;
+    for (const Curve& curve : plot.curves) names += p.WidthOf(p.fonts.small, curve.name) + 6 * s;
   }
-  // The words stay readable over a curve.
+  const float width = p.WidthOf(p.fonts.small, plot.title) + names + 10 * s;
+  // In a low plot the words are over the curve: they stay readable, and it is seen behind them.
   const float value_start = curves.high.x - 10 * s - p.WidthOf(p.fonts.small, plot.value);
-  constexpr ImU32 kBehind = IM_COL32(24, 32, 38, 225);
-  p.list->AddRectFilled(curves.low, {curves.low.x + width, line}, kBehind, 3 * s);
-  p.list->AddRectFilled({value_start, curves.low.y}, {curves.high.x, line}, kBehind, 3 * s);
-  float x = curves.low.x + 5 * s;
+  p.list->AddRectFilled(curves.low, {curves.low.x + width, line}, colour::kBehindText, 3 * s);
+  p.list->AddRectFilled({value_start, curves.low.y}, {curves.high.x, line}, colour::kBehindText,
+                        3 * s);
+  float x = curves.low.x + (titled ? 5 : -1) * s;
   x += p.Write(p.fonts.small, {x, curves.low.y}, one ? plot.curves[0].ink : colour::kFaint,
                plot.title);
   for (const Curve& curve : plot.curves) {
@@ -91,12 +94,14 @@ void DrawLegend(const Paint& p, const Box& curves, const Plot& plot) {
 }
 
 void DrawPlot(const Paint& p, const Box& box, const Plot& plot, std::int64_t now_ns) {
-  const Box curves = CurvesOf(p, box);
+  const Box whole = CurvesOf(p, box);
+  Box curves = whole;
+  if (whole.height() >= kLegendAboveFrom * p.scale) curves.low.y += kLegendHeight * p.scale;
   DrawAxes(p, curves, plot);
   p.list->PushClipRect(curves.low, curves.high, true);
   for (const Curve& curve : plot.curves) DrawCurve(p, box, curves, plot, curve, now_ns);
   p.list->PopClipRect();
-  DrawLegend(p, curves, plot);
+  DrawLegend(p, whole, plot);
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ Fonts LoadFonts(float scale);
 namespace colour {
 inline constexpr ImU32 kPanel = IM_COL32(16, 22, 30, 178);
 inline constexpr ImU32 kBehindText = IM_COL32(24, 32, 38, 150);
+inline constexpr ImU32 kBehindKeys = IM_COL32(16, 22, 30, 190);  // The list lies over the scene.
 inline constexpr ImU32 kPanelEdge = IM_COL32(255, 255, 255, 26);
 inline constexpr ImU32 kText = IM_COL32(244, 246, 248, 255);
 inline constexpr ImU32 kFaint = IM_COL32(170, 182, 194, 255);

@@ -9,6 +9,7 @@
 #include "common/config/data_file.h"
 #include "common/statistics/analysis.h"
 #include "common/statistics/study_table.h"
+#include "common/statistics_options/statistics_options.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/eval/stats/stats_text.h"
 
@@ -21,9 +22,7 @@ using statistics::NamesOf;
 struct StatsOptions {
   std::string data;
   std::string test;
-  std::string alternative = "two.sided";
-  std::string ties;
-  std::string method;
+  statistics_options::Options shared;
   std::string control;
   statistics::AnalysisRequest request;
 };
@@ -31,16 +30,13 @@ struct StatsOptions {
 Result<ordered_json> EvaluateStats(const StatsOptions& options) {
   statistics::AnalysisRequest request = options.request;
   request.test = statistics::Named(options.test, statistics::kTests);
-  request.alternative = statistics::Named(options.alternative, statistics::kAlternatives);
-  if (!options.ties.empty()) {
-    if (request.test != statistics::TestKind::kSteel) {
-      return UsageError("--ties applies to --test steel only");
-    }
-    request.ties = statistics::Named(options.ties, statistics::kAllTies);
+  if (!options.shared.ties.empty() && request.test != statistics::TestKind::kSteel) {
+    return UsageError("--ties applies to --test steel only");
   }
-  if (!options.method.empty()) {
-    request.method = statistics::Named(options.method, statistics::kMethods);
-  }
+  const auto chosen = statistics_options::ChosenIn(options.shared);
+  request.alternative = chosen.alternative;
+  request.ties = chosen.ties;
+  request.method = chosen.method;
   const auto text = config::ReadTextFile(options.data);
   if (!text) return text.error();
   const auto table = statistics::ParseStudyTable(
@@ -63,20 +59,9 @@ void AddStatsOptions(CLI::App& command, StatsOptions& options) {
                   "control; paired: subject,group,value; rate: whole values, and optionally "
                   "exposure")
       ->required();
-  command
-      .add_option("--alternative", options.alternative,
-                  "Differences to look for: any, or values greater or less than the control's")
-      ->check(CLI::IsMember(NamesOf(statistics::kAlternatives)));
-  command
-      .add_option("--ties", options.ties,
-                  "Ties that Steel's deviation allows for: of the two groups compared, or of all "
-                  "groups (default pairwise)")
-      ->check(CLI::IsMember(NamesOf(statistics::kAllTies)));
-  command
-      .add_option("--method", options.method,
-                  "Source of p (default: exact where feasible, otherwise permutation; rate: "
-                  "asymptotic)")
-      ->check(CLI::IsMember(NamesOf(statistics::kMethods)));
+  statistics_options::Add(command, options.shared,
+                          "Source of p (default: exact where feasible, otherwise permutation; "
+                          "rate: asymptotic)");
   command.add_option("--seed", options.request.seed, "Seed of the random permutations");
   command
       .add_option("--permutations", options.request.permutations, "Number of random permutations")

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "common/statistics/analysis.h"
+
+/// The options of tests against a control that several programs have.
+namespace footing::statistics_options {
+
+/// As the command line gives them; `ties` and `method` are empty where it does not.
+struct Options {
+  std::string alternative = "two.sided";
+  std::string ties;
+  std::string method;
+};
+
+struct Chosen {
+  statistics::Alternative alternative = statistics::Alternative::kTwoSided;
+  statistics::Ties ties = statistics::Ties::kPairwise;  ///< Of Steel's test.
+  std::optional<statistics::Method> method;             ///< Without: the one the test prefers.
+};
+
+/// Adds --alternative, --ties and --method, the last with that help. CLI11 refuses other names than
+/// those of statistics::kAlternatives, kAllTies and kMethods.
+void Add(CLI::App& command, Options& options, const std::string& method_help);
+/// What was chosen with names that CLI11 has checked.
+Chosen ChosenIn(const Options& options);
+
+}  // namespace footing::statistics_options
