@@ -37,11 +37,11 @@ std::string ToText(const engine::EngineEvent& event) {
   const std::string gaits = std::string(stream::Name(event.from)) + " to " + stream::Name(event.to);
   switch (event.kind) {
     case engine::EventKind::kGaitCommanded:
-      return "commanded: " + gaits;
+      return "gait commanded: " + gaits;
     case engine::EventKind::kGaitTakenOver:
-      return "taken over: " + gaits;
+      return "gait begins: " + gaits;
     case engine::EventKind::kGaitChanged:
-      return "changed: " + gaits;
+      return "gait changed: " + gaits;
     case engine::EventKind::kFall:
       return std::string("failure (") + stream::Name(event.cause) + "): " + event.text;
     case engine::EventKind::kPutBack:
