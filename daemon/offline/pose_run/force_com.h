@@ -17,8 +17,8 @@ struct ForceCourse {
 /// fitted to `height_m`, a path of the COM's height by other means. Level they are place, velocity
 /// and a constant force, so that the angular momentum which the COP implies about the COM changes
 /// by nothing in the mean: COP = c - z / (g + z'') c'' (Zatsiorsky & King 1998 fix the constants
-/// where c'' is 0). The course needs to be so long that a body in place has turned to and fro in
-/// it; five seconds of squats will do, a single jump will not.
+/// where c'' is 0). A body in place needs to turn to and fro in the course: five seconds of squats
+/// will do, a single jump will not.
 Eigen::Matrix3Xd ComByForce(const ForceCourse& course, const Eigen::VectorXd& height_m);
 
 }  // namespace footing::pose_run

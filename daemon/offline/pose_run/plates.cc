@@ -7,7 +7,7 @@
 #include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/sensors/impact_reaction.h"
-#include "daemon/offline/pose_run/force_com.h"
+#include "daemon/offline/pose_run/plates_com.h"
 #include "daemon/offline/pose_run/stage.h"
 
 namespace footing::pose_run {
@@ -27,7 +27,6 @@ constexpr double kElsewhereM = 0.4;     // Forces of another place or trial.
 constexpr double kMassOff = 0.05;
 constexpr double kTinyS = 1e-6;
 constexpr double kMovingMps = 0.3;
-constexpr double kLeastForceComS = 5;
 
 /// [begin, begin + count) of the clip's frames.
 motion::Motion Part(const motion::Motion& clip, Eigen::Index begin, Eigen::Index count) {
@@ -134,7 +133,6 @@ class Feet {
     begins_aloft_ = begin[0].load_n + begin[1].load_n < kLoadedN;
   }
 
-  double begin_s() const { return begin_s_; }  ///< Of the clip.
   double judged_s() const { return begin_s_ + kRunInS; }
 
   Forces At(double time_s, Eigen::Index column) const {
@@ -243,38 +241,6 @@ void Compare(const motion::Motion& clip, const sensors::Scene& scene, const Felt
   report.force_own_mass_rms_n = count > 0 ? std::sqrt(std::max(own_n2, 0.0) / count) : 0;
 }
 
-/// The COM of the evaluated frames by the plates' own force; `begin_s`: of the clip in the run.
-Eigen::Matrix3Xd ComByPlates(const PoseRun& run, const FeltForces& felt, double begin_s) {
-  const std::size_t first = run.judged_from;
-  const auto frames = static_cast<Eigen::Index>(run.frames.size() - first);
-  const auto speed_mps = [&](std::size_t i) {
-    return (run.frames[i + 1].com_m - run.frames[i].com_m).norm() * run.rate_hz;
-  };
-  if (static_cast<double>(frames) < kLeastForceComS * run.rate_hz ||
-      speed_mps(first) > kMovingMps || speed_mps(run.frames.size() - 2) > kMovingMps) {
-    return {};
-  }
-  ForceCourse course{run.rate_hz, Eigen::Matrix3Xd::Zero(3, frames),
-                     Eigen::Matrix2Xd::Zero(2, frames)};
-  Eigen::VectorXd height_m(frames);
-  for (Eigen::Index i = 0; i < frames; ++i) {
-    const std::size_t frame = first + static_cast<std::size_t>(i);
-    const double clip_s = static_cast<double>(frame) / run.rate_hz - begin_s;
-    Eigen::Vector2d moment_nm = Eigen::Vector2d::Zero();
-    double load_n = 0;
-    for (std::size_t f = 0; f < kFeet; ++f) {
-      const sensors::FootForce foot = felt.Mean(f, clip_s, 1 / run.rate_hz);
-      if (!foot.cop_m.allFinite()) continue;
-      load_n += foot.load_n;
-      moment_nm += foot.load_n * foot.cop_m;
-    }
-    course.force_n.col(i) << felt.MeanShear(clip_s, 1 / run.rate_hz), load_n;
-    if (load_n > 0) course.cop_m.col(i) = moment_nm / load_n;
-    height_m(i) = run.frames[frame].com_m.z();
-  }
-  return ComByForce(course, height_m);
-}
-
 }  // namespace
 
 Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundForces& forces,
@@ -318,16 +284,14 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
   out.simulated = RunScene(*scene, settings, SimulatedForces(*scene));
   out.measured.judged_from = out.simulated.judged_from =
       static_cast<std::size_t>(std::ceil((feet.judged_s() - kTinyS) * settings.rate_hz));
-  out.com_by_force_m = ComByPlates(out.measured, felt, feet.begin_s());
+  out.com_by_force_m = ComByPlates(out.measured, felt, feet.judged_s() - kRunInS);
   out.measured.clock_offset_s = out.simulated.clock_offset_s =
       part.start_s - (scene->motion.duration_s() - part.duration_s());
   out.report.plates = felt.plates;
   out.report.begin_s = part.start_s;
   out.report.end_s = LastS(part);
-  const std::size_t first = out.measured.judged_from;
-  out.report.begin_mps =
-      (out.measured.frames[first + 1].com_m - out.measured.frames[first].com_m).norm() *
-      settings.rate_hz;
+  const Frame* const first = &out.measured.frames[out.measured.judged_from];
+  out.report.begin_mps = (first[1].com_m - first[0].com_m).norm() * settings.rate_hz;
   Compare(part, *scene, felt, out.report);
   AddWarnings(settings.mass_kg, out.report);
   return out;
