@@ -41,6 +41,20 @@ double Beside(const sensors::BodyCourse& course, std::size_t foot, Eigen::Index 
   return (at - heel - share * along).norm();
 }
 
+/// Calls `use` with a sample, the next one and the share of the next, at points spread evenly over
+/// `span_s` around a time; returns their number.
+template <typename Use>
+int Sample(double time_s, double span_s, double rate_hz, Eigen::Index count, const Use& use) {
+  const int points = std::max(1, static_cast<int>(std::ceil(span_s * rate_hz)));
+  for (int i = 0; i < points; ++i) {
+    const double off_s = span_s * ((i + 0.5) / points - 0.5);
+    const double at = std::clamp((time_s + off_s) * rate_hz, 0.0, static_cast<double>(count - 1));
+    const auto low = static_cast<Eigen::Index>(at);
+    use(low, std::min(low + 1, count - 1), at - static_cast<double>(low));
+  }
+  return points;
+}
+
 /// One plate's part, added to what the feet feel.
 class PlateFeeler {
  public:
@@ -73,6 +87,7 @@ class PlateFeeler {
         const double force_n = plate.force_W(2, first + i);
         felt.load_n[foot](i) += force_n;
         felt.moment_nm[foot].col(i) += force_n * CopOf(plate, first + i);
+        felt.shear_n.col(i) += (placed_.R_WV * plate.force_W.col(first + i)).head<2>();
       }
       use.loaded_s[foot] += static_cast<double>(end - begin) / forces_.rate_hz;
       load_sum += load;
@@ -103,25 +118,29 @@ class PlateFeeler {
 
 sensors::FootForce FeltForces::Mean(std::size_t foot, double time_s, double span_s) const {
   const Eigen::VectorXd& loads = load_n[foot];
-  const int points = std::max(1, static_cast<int>(std::ceil(span_s * rate_hz)));
   sensors::FootForce force;
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
-  for (int i = 0; i < points; ++i) {
-    const double off_s = span_s * ((i + 0.5) / points - 0.5);
-    const double at =
-        std::clamp((time_s + off_s) * rate_hz, 0.0, static_cast<double>(loads.size() - 1));
-    const auto low = static_cast<Eigen::Index>(at);
-    const Eigen::Index high = std::min<Eigen::Index>(low + 1, loads.size() - 1);
-    const double part = at - static_cast<double>(low);
-    force.load_n += ((1 - part) * loads(low) + part * loads(high)) / points;
-    moment += ((1 - part) * moment_nm[foot].col(low) + part * moment_nm[foot].col(high)) / points;
-  }
+  const int points = Sample(
+      time_s, span_s, rate_hz, loads.size(), [&](Eigen::Index low, Eigen::Index high, double part) {
+        force.load_n += (1 - part) * loads(low) + part * loads(high);
+        moment += (1 - part) * moment_nm[foot].col(low) + part * moment_nm[foot].col(high);
+      });
+  force.load_n /= points;
   if (force.load_n > 0) {
-    force.cop_m = moment / force.load_n;
+    force.cop_m = moment / points / force.load_n;
   } else {
     force.cop_m.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return force;
+}
+
+Eigen::Vector2d FeltForces::MeanShear(double time_s, double span_s) const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  const int points = Sample(time_s, span_s, rate_hz, shear_n.cols(),
+                            [&](Eigen::Index low, Eigen::Index high, double part) {
+                              sum += (1 - part) * shear_n.col(low) + part * shear_n.col(high);
+                            });
+  return sum / points;
 }
 
 FeltForces FeelPlates(const motion::Motion& clip, const sensors::Scene& scene,
@@ -139,6 +158,7 @@ FeltForces FeelPlates(const motion::Motion& clip, const sensors::Scene& scene,
     felt.load_n[f] = Eigen::VectorXd::Zero(count);
     felt.moment_nm[f] = Eigen::Matrix2Xd::Zero(2, count);
   }
+  felt.shear_n = Eigen::Matrix2Xd::Zero(2, count);
   const PlateFeeler feeler(clip, scene, forces);
   for (const motion::PlateForces& plate : forces.plates) {
     felt.plates.push_back(feeler.Add(plate, first, felt));

@@ -24,10 +24,12 @@ struct FeltForces {
   double rate_hz = 0;
   std::array<Eigen::VectorXd, virtual_sensors::kFeet> load_n;
   std::array<Eigen::Matrix2Xd, virtual_sensors::kFeet> moment_nm;  ///< Load times COP.
+  Eigen::Matrix2Xd shear_n;  ///< On the person, of all plates together.
   std::vector<PlateUse> plates;
 
   /// Mean over `span_s` around a time of the clip; the COP is NaN where there is no load.
   virtual_sensors::FootForce Mean(std::size_t foot, double time_s, double span_s) const;
+  Eigen::Vector2d MeanShear(double time_s, double span_s) const;
 };
 
 /// Gives every contact of a plate (a run of more than 20 N) to the foot that its COP is nearer to,

@@ -7,6 +7,7 @@
 #include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/sensors/impact_reaction.h"
+#include "daemon/offline/pose_run/plates_com.h"
 #include "daemon/offline/pose_run/stage.h"
 
 namespace footing::pose_run {
@@ -283,15 +284,14 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
   out.simulated = RunScene(*scene, settings, SimulatedForces(*scene));
   out.measured.judged_from = out.simulated.judged_from =
       static_cast<std::size_t>(std::ceil((feet.judged_s() - kTinyS) * settings.rate_hz));
+  out.com_by_force_m = ComByPlates(out.measured, felt, feet.judged_s() - kRunInS);
   out.measured.clock_offset_s = out.simulated.clock_offset_s =
       part.start_s - (scene->motion.duration_s() - part.duration_s());
   out.report.plates = felt.plates;
   out.report.begin_s = part.start_s;
   out.report.end_s = LastS(part);
-  const std::size_t first = out.measured.judged_from;
-  out.report.begin_mps =
-      (out.measured.frames[first + 1].com_m - out.measured.frames[first].com_m).norm() *
-      settings.rate_hz;
+  const Frame* const first = &out.measured.frames[out.measured.judged_from];
+  out.report.begin_mps = (first[1].com_m - first[0].com_m).norm() * settings.rate_hz;
   Compare(part, *scene, felt, out.report);
   AddWarnings(settings.mass_kg, out.report);
   return out;

@@ -35,6 +35,9 @@ struct PlateReport {
 struct PlateRun {
   PoseRun measured, simulated;
   PlateReport report;
+  /// COM by the plates' own force (ComByForce), m, a column a frame of `measured` from judged_from
+  /// on. Empty for a trial that is too short for it, or starts or ends in motion.
+  Eigen::Matrix3Xd com_by_force_m = {};
 };
 
 /// As RunPose, with measured forces. The longest stretch in which the plates carry the body is

@@ -181,6 +181,7 @@ ordered_json ReportOf(const LeaveOneOut& study, const std::vector<std::string>& 
       of_person.Add(scored.tally);
       by_activity[ActivityOf(study.ClipOf(scored))].Add(scored.tally);
     }
+    of_person.AboutPerson();
     sum.Add(of_person);
     report["people"][people[i]] = of_person.Json();
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/offline/eval/scores/pose_metrics.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
@@ -68,11 +69,25 @@ void AddReport(const reconstruction::Output& output, const pose_run::Frame& fram
   for (const int joint : joints.arms) add(static_cast<std::size_t>(joint), tally.arms);
 }
 
+void AddHipTurns(const eval::PoseScore& score, PoseTally& tally) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const Eigen::Vector3d& turn : score.hip_turns_rad()[side]) {
+      tally.hip_square_rad2 += turn.squaredNorm();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        tally.hip_turn_rad[3 * side + axis] += turn(static_cast<Eigen::Index>(axis));
+      }
+    }
+  }
+}
+
 void AddTimes(double frames, const eval::LegAngles& mean, eval::LegAngles& sum) {
   sum.hip += frames * mean.hip;
   sum.swing += frames * mean.swing;
   sum.twist += frames * mean.twist;
   sum.knee += frames * mean.knee;
+  sum.flexion += frames * mean.flexion;
+  sum.abduction += frames * mean.abduction;
+  sum.rotation += frames * mean.rotation;
 }
 
 }  // namespace
@@ -86,10 +101,18 @@ void PoseTally::Add(const PoseTally& other) {
   all.Add(other.all);
   legs.Add(other.legs);
   arms.Add(other.arms);
+  for (std::size_t i = 0; i < hip_turn_rad.size(); ++i) hip_turn_rad[i] += other.hip_turn_rad[i];
+  hip_square_rad2 += other.hip_square_rad2;
+  hip_about_person_rad2 += other.hip_about_person_rad2;
   for (std::size_t i = 0; i < kPoseWays; ++i) {
     if (other.mpjpe_cm[i]) mpjpe_cm[i] = mpjpe_cm[i].value_or(0) + *other.mpjpe_cm[i];
     AddTimes(1, other.angles_deg[i], angles_deg[i]);
   }
+}
+
+void PoseTally::AboutPerson() {
+  hip_about_person_rad2 = hip_square_rad2;
+  for (const double sum : hip_turn_rad) hip_about_person_rad2 -= sum * sum / frames;
 }
 
 nlohmann::ordered_json PoseTally::Json() const {
@@ -101,7 +124,17 @@ nlohmann::ordered_json PoseTally::Json() const {
                           {"hip_deg", angles.hip / frames},
                           {"hip_swing_deg", angles.swing / frames},
                           {"hip_twist_deg", angles.twist / frames},
+                          {"hip_flexion_deg", angles.flexion / frames},
+                          {"hip_abduction_deg", angles.abduction / frames},
+                          {"hip_rotation_deg", angles.rotation / frames},
                           {"knee_deg", angles.knee / frames}};
+  }
+  const auto rms_deg = [this](double square_rad2) {
+    return RadiansToDegrees(std::sqrt(square_rad2 / (2 * frames)));  // Two hips a frame.
+  };
+  json["hip_rms_deg"] = rms_deg(hip_square_rad2);
+  if (hip_about_person_rad2 > 0) {
+    json["hip_about_person_rms_deg"] = rms_deg(hip_about_person_rad2);
   }
   json["gain_over_learned"] = 1 - mpjpe_cm[Index(PoseWay::kBest)].value_or(0) /
                                       mpjpe_cm[Index(PoseWay::kLearned)].value_or(1);
@@ -132,6 +165,7 @@ Result<void> ScoreWay(PoseWay way, const pose_run::PoseRun& run,
     sum_cm += score.last_mpjpe_cm();
     if (way == PoseWay::kBest) AddReport(output, frame, score, joints, tally);
   }
+  if (way == PoseWay::kBest) AddHipTurns(score, tally);
   tally.mpjpe_cm[Index(way)] = sum_cm;
   AddTimes(static_cast<double>(run.frames.size() - run.judged_from), score.leg_angles_deg(),
            tally.angles_deg[Index(way)]);

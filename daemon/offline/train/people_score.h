@@ -65,8 +65,15 @@ struct PoseTally {
   Nees all, legs, arms;
   std::array<std::optional<double>, kPoseWays> mpjpe_cm{};  ///< Of each way that was asked for.
   std::array<eval::LegAngles, kPoseWays> angles_deg{};      ///< Of the same, summed.
+  /// From the true hips of a person to those of boards and hands, summed; rad, left and right.
+  std::array<double, 6> hip_turn_rad{};
+  double hip_square_rad2 = 0;
+  /// The same sum of squares about the mean of each leg of each person, by AboutPerson.
+  double hip_about_person_rad2 = 0;
 
   void Add(const PoseTally& other);
+  /// Ends the sums of one person's takes.
+  void AboutPerson();
   nlohmann::ordered_json Json() const;
 };
 

@@ -15,12 +15,12 @@ namespace sensors = virtual_sensors;
 constexpr double kMassKg = 75;
 
 /// Sways to the left and right and up and down by centimetres, on straight legs.
-motion::Motion Swaying() {
+motion::Motion Swaying(Eigen::Index frames = 400) {
   motion::Motion motion;
   motion.skeleton = body::StandardPerson(1.75);
   const body::Landmarks landmarks = body::FindLandmarks(motion.skeleton).value();
   motion.rate_hz = 100;
-  motion.q = body::TPose(motion.skeleton, landmarks).replicate(1, 400);
+  motion.q = body::TPose(motion.skeleton, landmarks).replicate(1, frames);
   for (Eigen::Index i = 0; i < motion.frames(); ++i) {
     const double t_s = static_cast<double>(i) / motion.rate_hz;
     motion.q(1, i) += 0.02 * std::sin(2 * kPi * 0.5 * t_s);
@@ -70,6 +70,8 @@ motion::GroundForces Plates(const motion::Motion& clip, double begin_s = 0) {
     for (std::size_t f = 0; f < felt.size(); ++f) {
       motion::PlateForces& plate = forces.plates[1 - f];
       plate.force_W(2, i) = felt[f].load_n;
+      const Eigen::Vector3d force_n = scene.reaction.force_n.col(column);
+      plate.force_W.col(i).head<2>() = felt[f].load_n / force_n.z() * (turn * force_n).head<2>();
       plate.cop_W.col(i) = turn * Eigen::Vector3d(felt[f].cop_m.x(), felt[f].cop_m.y(), 0) + by;
     }
   }
@@ -195,6 +197,26 @@ TEST(Plates, WarnOfAnotherWeightAndOfTwoFeetOnOne) {
   EXPECT_GT(shared->report.plates[0].beside_m, 0.08);
   ASSERT_EQ(shared->report.warnings.size(), 1u);
   EXPECT_NE(shared->report.warnings[0].find("both feet"), std::string::npos);
+}
+
+TEST(Plates, HaveTheComOfTheirOwnForceInALongTrial) {
+  // Shear counts in the axes of the laboratory, so a person who looks elsewhere shows its turn.
+  const motion::Motion clip = Moved(Swaying(800), 0.8, {3, -2, 0.1});
+  const auto made = OnPlates(clip, Plates(clip));
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  const std::size_t first = made->measured.judged_from;
+  ASSERT_EQ(made->com_by_force_m.cols(),
+            static_cast<Eigen::Index>(made->measured.frames.size() - first));
+  double most_m = 0, moved_m = 0;
+  for (Eigen::Index i = 0; i < made->com_by_force_m.cols(); ++i) {
+    const Eigen::Vector3d com_m = made->measured.frames[first + static_cast<std::size_t>(i)].com_m;
+    most_m = std::max(most_m, (made->com_by_force_m.col(i) - com_m).norm());
+    moved_m = std::max(moved_m, std::abs(com_m.y() - made->measured.frames[first].com_m.y()));
+  }
+  EXPECT_GT(moved_m, 0.015);
+  EXPECT_LT(most_m, 0.003);
+  // Four seconds do not fix the constants of the integration.
+  EXPECT_EQ(OnPlates(Swaying(), Plates(Swaying()))->com_by_force_m.cols(), 0);
 }
 
 TEST(Plates, RefuseForcesOfAnotherPlaceOrTimeAndALoop) {

@@ -226,7 +226,17 @@ class Train(unittest.TestCase):
             for way in ("best", "hands_feet_learned", "hands_feet_ik"):
                 for part in ("hip_swing_deg", "hip_twist_deg"):
                     self.assertLessEqual(person[way][part], person[way]["hip_deg"] + 1e-9)
+                # A thigh's direction is off by no more than both of its angles together.
+                angles = [person[way][f"hip_{name}_deg"] for name in ("flexion", "abduction", "rotation")]
+                self.assertGreater(min(angles), 0)
+                self.assertLessEqual(person[way]["hip_swing_deg"], angles[0] + angles[1])
+            self.assertLess(person["hip_about_person_rms_deg"], person["hip_rms_deg"])
+            self.assertGreaterEqual(person["hip_rms_deg"], person["best"]["hip_deg"])
             self.assertLessEqual(person["invalid_share"], 1)
+        # The means of two people are taken off one by one.
+        squares = [person["hip_about_person_rms_deg"] ** 2 for person in report["people"].values()]
+        mean = sum(n * square for n, square in zip(frames, squares)) / sum(frames)
+        self.assertAlmostEqual(report["all"]["hip_about_person_rms_deg"], mean ** 0.5)
         only = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--json")
         self.assertEqual(json.loads(only.stdout)["people"]["2"], report["people"]["2"])
         known = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--ablations", "--json")

@@ -1,5 +1,7 @@
 #include "daemon/offline/eval/pose/plates.h"
 
+#include <cmath>
+
 #include "common/units/units.h"
 #include "daemon/offline/eval/momentum/offline.h"
 #include "daemon/simulation/reconstruction/feet.h"
@@ -23,11 +25,40 @@ constexpr const char* kCompared[] = {"mpjpe_cm",
                                      "contact_f1",
                                      "nees"};
 
+constexpr const char* kOfCom[] = {"com_vertical_rms_cm", "loads_com_vertical_rms_cm",
+                                  "com_forward_rms_cm",  "com_forward_bias_cm",
+                                  "com_forward_sd_cm",   "com_lateral_rms_cm"};
+
 ordered_json FeetJson(const pose_run::PlateUse& use) {
   return {{"plate", use.plate},
           {"left_s", use.loaded_s[0]},
           {"right_s", use.loaded_s[1]},
           {"beside_cm", 100 * use.beside_m}};
+}
+
+/// The fields that compare the COM with that of the plates' own force, and how far the markers' COM
+/// is from it, in cm along x, y and z.
+Result<ordered_json> ByForce(const pose_run::PlateRun& plates, const reconstruction::Models& models,
+                             const reconstruction::Options& options, const Oracle& oracle) {
+  pose_run::PoseRun run = plates.measured;
+  Eigen::Vector3d square_m2 = Eigen::Vector3d::Zero(), sum_m = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < plates.com_by_force_m.cols(); ++i) {
+    Eigen::Vector3d& com_m = run.frames[run.judged_from + static_cast<std::size_t>(i)].com_m;
+    const Eigen::Vector3d off_m = com_m - plates.com_by_force_m.col(i);
+    square_m2 += off_m.cwiseAbs2();
+    sum_m += off_m;
+    com_m = plates.com_by_force_m.col(i);
+  }
+  const auto trial = RunPoseTrial(run, models, options, oracle);
+  if (!trial) return trial.error();
+  ordered_json json;
+  for (const char* field : kOfCom) json[field] = trial->at(field);
+  const auto frames = static_cast<double>(plates.com_by_force_m.cols());
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    json["markers_rms_cm"].push_back(100 * std::sqrt(square_m2(axis) / frames));
+    json["markers_bias_cm"].push_back(100 * sum_m(axis) / frames);
+  }
+  return json;
 }
 
 /// The centre of mass by the offline smoothers, from the cells alone.
@@ -73,6 +104,11 @@ Result<ordered_json> ScorePlates(const pose_run::PlateRun& plates,
   const auto offline = Offline(plates.measured);
   if (!offline) return offline.error();
   json["offline"] = *offline;
+  if (plates.com_by_force_m.cols() > 0) {
+    const auto by_force = ByForce(plates, models, options, oracle);
+    if (!by_force) return by_force.error();
+    json["by_force"] = *by_force;
+  }
   json["warnings"] = report.warnings;
   for (const char* field : kCompared) json["simulated"][field] = simulated->at(field);
   return json;

@@ -7,6 +7,7 @@
 #include "common/rotation/rotation.h"
 #include "common/text/quantile.h"
 #include "common/units/units.h"
+#include "daemon/offline/eval/scores/hip_angles.h"
 
 namespace footing::eval {
 namespace {
@@ -15,8 +16,9 @@ using body::Landmark;
 using nlohmann::ordered_json;
 
 constexpr const char* kAngles[] = {"hip", "knee", "shoulder", "elbow", "chest"};
-constexpr const char* kHipParts[] = {"hip_swing_deg", "hip_twist_deg", "hip_twist_bent_deg",
-                                     "pelvis_deg", "thigh_direction_deg"};
+constexpr const char* kHipParts[] = {
+    "hip_swing_deg",       "hip_twist_deg",   "hip_twist_bent_deg", "pelvis_deg",
+    "thigh_direction_deg", "hip_flexion_deg", "hip_abduction_deg",  "hip_rotation_deg"};
 constexpr double kBentDeg = 30;  // Of the true knee: from there on it shows how the thigh turns.
 
 void AddSides(const body::Body& body, Landmark left, std::vector<int>& joints) {
@@ -110,7 +112,10 @@ PoseScore::PoseScore(const body::Body& body)
       joints_(body),
       at_(body.skeleton),
       truth_(body.skeleton),
-      errors_m_(static_cast<std::size_t>(body.skeleton.size())) {}
+      errors_m_(static_cast<std::size_t>(body.skeleton.size())),
+      t_pose_(body.skeleton) {
+  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), t_pose_);
+}
 
 double PoseScore::Mean(const std::vector<int>& joints, const Eigen::Vector3d& shift) const {
   double sum = 0;
@@ -163,11 +168,11 @@ void PoseScore::AddAngles() {
 }
 
 void PoseScore::AddHips() {
-  for (const Landmark hip : {Landmark::kLeftHip, body::Mirrored(Landmark::kLeftHip)}) {
-    const Landmark knee =
-        hip == Landmark::kLeftHip ? Landmark::kLeftKnee : body::Mirrored(Landmark::kLeftKnee);
-    const auto h = static_cast<std::size_t>(body_.landmarks[hip]);
-    const auto k = static_cast<std::size_t>(body_.landmarks[knee]);
+  for (int side = 0; side < 2; ++side) {
+    const auto joint = [&](Landmark left) {
+      return static_cast<std::size_t>(body_.landmarks[body::OfSide(left, side)]);
+    };
+    const std::size_t h = joint(Landmark::kLeftHip), k = joint(Landmark::kLeftKnee);
     const auto pelvis = static_cast<std::size_t>(body_.skeleton.joints[h].parent);
     const auto thigh_W = [&](const body::Kinematics& at) -> Eigen::Vector3d {
       return (at.p_WJ[k] - at.p_WJ[h]).normalized();
@@ -179,13 +184,21 @@ void PoseScore::AddHips() {
     const Eigen::Vector3d true_along = truth_.R_WJ[pelvis].transpose() * thigh_W(truth_);
     const double twist_deg = TwistDeg(in_pelvis(at_), along, in_pelvis(truth_), true_along);
     const Eigen::AngleAxisd turn(in_pelvis(truth_).transpose() * in_pelvis(at_));
-    hip_turns_rad_[hip == Landmark::kLeftHip ? 0 : 1].emplace_back(turn.angle() * turn.axis());
+    hip_turns_rad_[static_cast<std::size_t>(side)].emplace_back(turn.angle() * turn.axis());
     const double bent_deg = AngleDeg(truth_.R_WJ[h], truth_.R_WJ[k]);
     hips_[0].Add(DirectionDeg(along, true_along));
     hips_[1].Add(twist_deg);
     if (bent_deg > kBentDeg) hips_[2].Add(twist_deg);
     hips_[3].Add(AngleDeg(at_.R_WJ[pelvis], truth_.R_WJ[pelvis]));
     hips_[4].Add(DirectionDeg(thigh_W(at_), thigh_W(truth_)));
+    const auto angles = [&](const body::Kinematics& pose) {
+      return HipAnglesDeg(t_pose_.R_WJ[pelvis] * in_pelvis(pose) * t_pose_.R_WJ[h].transpose(),
+                          side);
+    };
+    const HipAngles off = Difference(angles(at_), angles(truth_));
+    hips_[5].Add(off.flexion);
+    hips_[6].Add(off.abduction);
+    hips_[7].Add(off.rotation);
   }
 }
 

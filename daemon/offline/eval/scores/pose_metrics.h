@@ -36,9 +36,11 @@ class Spread {
 };
 
 /// Errors of the legs' angles, degrees: of the hip as a whole, of the direction of the thigh in the
-/// pelvis and of its turn about itself, and of the knee.
+/// pelvis and of its turn about itself, and of the knee; then of the hip's three angles
+/// (HipAngles).
 struct LegAngles {
   double hip = 0, swing = 0, twist = 0, knee = 0;
+  double flexion = 0, abduction = 0, rotation = 0;
 };
 
 /// Poses against the truth, frame by frame.
@@ -56,7 +58,12 @@ class PoseScore {
   double mpjpe_cm() const { return frames_.mean(); }
   double last_mpjpe_cm() const { return frames_.last(); }
   LegAngles leg_angles_deg() const {
-    return {angles_[0].mean(), hips_[0].mean(), hips_[1].mean(), angles_[1].mean()};
+    return {angles_[0].mean(), hips_[0].mean(), hips_[1].mean(), angles_[1].mean(),
+            hips_[5].mean(),   hips_[6].mean(), hips_[7].mean()};
+  }
+  /// What hip_about_mean_deg is computed from: left and right, a frame each.
+  const std::array<std::vector<Eigen::Vector3d>, 2>& hip_turns_rad() const {
+    return hip_turns_rad_;
   }
   nlohmann::ordered_json Json() const;
 
@@ -72,8 +79,9 @@ class PoseScore {
   Spread frames_, relative_, legs_, torso_, arms_;  ///< cm.
   std::array<Spread, 5> angles_;                    ///< Degrees: hip, knee, shoulder, elbow, chest.
   /// Degrees. Of the thigh in the pelvis: its direction; its turn about itself, of all frames and
-  /// of those with a bent knee. Then the pelvis and the thigh's direction in W.
-  std::array<Spread, 5> hips_;
+  /// of those with a bent knee. Then the pelvis and the thigh's direction in W, and HipAngles.
+  std::array<Spread, 8> hips_;
+  body::Kinematics t_pose_;  ///< Where HipAngles are 0.
   /// From the true hip to the estimated one, rad along the axis in the thigh; left and right. Their
   /// mean is what a person's markers or way of standing turn in all frames alike.
   std::array<std::vector<Eigen::Vector3d>, 2> hip_turns_rad_;

@@ -21,8 +21,8 @@ FIELDS = ("frames rate_hz mpjpe_cm mpjpe_p95_cm mpjpe_root_relative_cm mpjpe_leg
           "mpjpe_arms_cm joint_angle_error_deg com_vertical_rms_cm com_horizontal_rms_cm "
           "com_vertical_drift_cm_per_min com_horizontal_drift_cm_per_min foot_skate_cm_per_s "
           "foot_position_rms_cm contact_f1 landing_delay_ms solve_us_p50 solve_us_p99 hip_swing_deg "
-          "hip_twist_deg hip_twist_bent_deg hip_about_mean_deg pelvis_deg thigh_direction_deg "
-          "baselines").split()
+          "hip_twist_deg hip_twist_bent_deg hip_about_mean_deg hip_flexion_deg hip_abduction_deg "
+          "hip_rotation_deg pelvis_deg thigh_direction_deg baselines").split()
 
 
 def run(*arguments):

@@ -67,6 +67,14 @@ class Plates(unittest.TestCase):
         self.assertLess(told["offline"]["com_vertical_rms_cm"], 2)
         self.assertLess(report["com_lateral_rms_cm"], 1)
         self.assertNotEqual(report["com_vertical_rms_cm"], told["simulated"]["com_vertical_rms_cm"])
+        # The plates' own force needs no masses of segments: forwards it is where the estimate is, and 2.6 cm
+        # behind the COM of the markers.
+        by_force = told["by_force"]
+        self.assertLess(by_force["com_forward_rms_cm"], 2)
+        self.assertLess(abs(by_force["com_forward_bias_cm"]), 0.2)
+        self.assertAlmostEqual(by_force["markers_bias_cm"][0], 2.6, delta=0.2)
+        self.assertLess(by_force["markers_rms_cm"][1], 0.2)
+        self.assertLess(by_force["markers_rms_cm"][2], 1)
         squats = {row["activity"]: row for row in report["by_activity"]}
         self.assertGreater(squats["bent"]["frames"] + squats.get("crouched", {"frames": 0})["frames"], 200)
         self.assertEqual(report["lift_offs"], 0)
