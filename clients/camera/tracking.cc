@@ -69,9 +69,7 @@ class Tracking {
     if (options_.seconds > 0) {
       limit_.expires_after(std::chrono::milliseconds(std::llround(1e3 * options_.seconds)));
       limit_.async_wait([this](boost::system::error_code error) {
-        if (error) return;
-        if (!link_.was_open()) report_.sent_on = device_link::NoFootingd(options_.to);
-        End({});
+        if (!error) EndInTime({});
       });
     }
     link_.Start();
@@ -83,7 +81,7 @@ class Tracking {
     LookAtTheFile();
     source_->Start(
         [this](const frames::Frame& frame, std::int64_t exposed_ns) { Take(frame, exposed_ns); },
-        [this](Result<void> end) { End(std::move(end)); });
+        [this](Result<void> end) { EndInTime(std::move(end)); });
     io_.run();
     if (!end_) return end_.error();
     report_.sent = link_.sent();
@@ -171,6 +169,12 @@ class Tracking {
     shown.has_pose = X_WC_.has_value();
     shown.simulated = options_.simulated;
     preview_->Show(clock::MonotonicNs());
+  }
+
+  /// Not by a signal: everything that was to be done is done.
+  void EndInTime(Result<void> end) {
+    if (!link_.was_open()) report_.sent_on = device_link::NoFootingd(options_.to);
+    End(std::move(end));
   }
 
   void End(Result<void> end) {

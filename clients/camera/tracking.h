@@ -32,7 +32,8 @@ struct TrackingReport {
   std::uint64_t saturated = 0;       ///< Spheres at the sensor's limit.
   std::vector<std::string> alarms;   ///< What was wrong with the camera, first lines.
   double cost_p50_ms = 0, cost_p99_ms = 0;
-  Result<void> sent_on;  ///< No device: footingd was not there for all of `seconds`.
+  Result<void> sent_on;  ///< No device: footingd was not there for all of `seconds`, or until the
+                         ///< frames ended.
 };
 
 /// Reads frames, finds the spheres and sends them to footingd until the end.

@@ -167,8 +167,8 @@ class Recording {
     report.duration_s = 1e-9 * static_cast<double>(statistics.message_end_time_ns -
                                                    statistics.message_start_time_ns);
     if (report.messages == 0) {
-      const std::string why =
-          "nothing came to record from " + waited_for + "; " + writer_.path() + " holds no message";
+      const std::string why = "nothing came to record from " + waited_for + "; " + writer_.path() +
+                              (writer_.Remove() ? " was removed" : " has no message");
       return any_reached ? Failure(why)
                          : NoDevice(why + "; start the server, or name it with --connect");
     }

@@ -8,6 +8,7 @@
 
 #include "common/stream/device.h"
 #include "common/text/utc.h"
+#include "common/units/instant.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
 
@@ -60,10 +61,11 @@ void AppendNames(const std::vector<std::string>& names, std::size_t count, std::
 void RowNotes::TakeSession(const mcap::TextMap& values) {
   const auto name = values.find("server");
   const std::int64_t wall_ns = NumberOf(values, "server_wall_time_ns");
-  if (name == values.end() || wall_ns == 0) return;
+  const std::int64_t host_ns = NumberOf(values, "server_host_ns");
+  if (name == values.end() || wall_ns == 0 || !IsInstant(wall_ns) || !IsInstant(host_ns)) return;
   Server& server = servers_[name->second];
   server.has_wall_time = true;
-  server.wall_minus_host_ns = wall_ns - NumberOf(values, "server_host_ns");
+  server.wall_minus_host_ns = wall_ns - host_ns;
 }
 
 void RowNotes::Take(const std::string& topic, std::string_view bytes) {
@@ -126,7 +128,7 @@ std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
   std::snprintf(seconds, sizeof seconds, ",%.9f,",
                 1e-9 * static_cast<double>(log_time_ns - std::min(first_ns_, log_time_ns)));
   std::string cells = seconds;
-  if (server.has_wall_time) {
+  if (server.has_wall_time && IsInstant(log_time_ns)) {
     cells += text::Utc(static_cast<std::int64_t>(log_time_ns) + server.wall_minus_host_ns, 6);
   }
   if (DeviceField(row) != nullptr) cells += ',' + Role(topic, row, entry);

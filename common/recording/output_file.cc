@@ -1,6 +1,7 @@
 #include "common/recording/output_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -74,6 +75,13 @@ Result<void> OutputFile::Sync() {
   // EINVAL: a pipe or a device, which has nothing to sync.
   if (::fdatasync(descriptor_) == 0 || errno == EINVAL) return {};
   return Failure("cannot write " + path_ + " to the disk: " + std::strerror(errno));
+}
+
+bool OutputFile::Remove() {
+  struct stat own, there;
+  if (::fstat(descriptor_, &own) != 0 || ::lstat(path_.c_str(), &there) != 0) return false;
+  const bool same = own.st_dev == there.st_dev && own.st_ino == there.st_ino;
+  return same && S_ISREG(own.st_mode) && ::unlink(path_.c_str()) == 0;
 }
 
 }  // namespace footing::recording

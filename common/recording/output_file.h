@@ -27,6 +27,9 @@ class OutputFile {
   Result<void> Write(std::string_view bytes);
   /// Waits until the bytes are on the disk: they survive the loss of power.
   Result<void> Sync();
+  /// Removes the file; false where its path is not, or no longer, this very file: a device, or a
+  /// link to another place.
+  bool Remove();
 
   const std::string& path() const { return path_; }
 

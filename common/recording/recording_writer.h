@@ -40,6 +40,8 @@ class RecordingWriter {
   Result<void> Flush();
   /// Writes the index and the end. Nothing may be written afterwards.
   Result<void> Finish();
+  /// See OutputFile::Remove().
+  bool Remove() { return file_.Remove(); }
 
   /// Something is not yet written down.
   bool pending() const { return writer_.pending(); }

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/clock/clock.h"
 #include "common/transport/address.h"
 
 namespace footing::device_faults {
@@ -98,7 +99,10 @@ bool Bench::Connect() {
   options.backoff_max_s = 0.05;
   options.queue_ticks = 500;
   transport::ClientHandlers handlers;
-  handlers.on_tick = [this](const v1::Tick& tick) { seen_.Take(tick); };
+  handlers.on_tick = [this](const v1::Tick& tick) {
+    CountUndisturbed(tick);
+    seen_.Take(tick);
+  };
   // Ticks that footingd left out because the machine did not let it run are nobody's fault here.
   handlers.on_gap = [this](const v1::Gap& gap) {
     if (gap.reason() != v1::Gap::REASON_UNSPECIFIED) gaps_.push_back(gap);
@@ -140,6 +144,19 @@ bool Bench::Until(const std::function<bool()>& holds, double timeout_s) {
     if (io_.stopped()) io_.restart();
   }
   return true;
+}
+
+void Bench::CountUndisturbed(const v1::Tick& tick) {
+  constexpr std::int64_t kLatestNs = 50'000'000, kLongestStepNs = 20'000'000;
+  if (tick.snapshot()) return;
+  const std::int64_t step_ns = tick.host_ns() - std::exchange(last_tick_ns_, tick.host_ns());
+  if (clock::MonotonicNs() - tick.host_ns() > kLatestNs) return;
+  undisturbed_ns_ += std::clamp<std::int64_t>(step_ns, 0, kLongestStepNs);
+}
+
+bool Bench::Within(double seconds, const std::function<bool()>& holds) {
+  const std::int64_t end_ns = undisturbed_ns_ + static_cast<std::int64_t>(seconds * 1e9);
+  return Until([&] { return holds() || undisturbed_ns_ >= end_ns; }) && holds();
 }
 
 bool Bench::UntilState(const std::string& serial, v1::DeviceState state, double timeout_s) {

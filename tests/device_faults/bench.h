@@ -109,6 +109,10 @@ class Bench {
   void Run(double seconds);
   /// Lets time pass until it holds; false after the timeout.
   bool Until(const std::function<bool()>& holds, double timeout_s = kPatienceS);
+  /// The same, with a limit on how long footingd may take: only time counts in which it published
+  /// and this process, which is the devices, took the ticks at once. What stands still, on either
+  /// side, is the machine's load. No longer than kPatienceS in all.
+  bool Within(double seconds, const std::function<bool()>& holds);
   bool UntilLive(const Device& device, double timeout_s = kPatienceS);
   bool UntilState(const std::string& serial, v1::DeviceState state, double timeout_s = kPatienceS);
   /// So many more motion and board samples of the device.
@@ -139,8 +143,12 @@ class Bench {
   std::unique_ptr<Program> footingd_;
   std::unique_ptr<transport::Client> client_;
   transport::LinkState link_ = transport::LinkState::kConnecting;
+  void CountUndisturbed(const v1::Tick& tick);
+
   Seen seen_;
   std::vector<v1::Gap> gaps_;
+  std::int64_t undisturbed_ns_ = 0;  ///< See Within().
+  std::int64_t last_tick_ns_ = 0;
 };
 
 }  // namespace footing::device_faults

@@ -65,9 +65,11 @@ class ExtensionFault : public Fault {
     EXPECT_TRUE(bench.UntilLive(device));
     return device;
   }
-  bool UntilExtension(const Device& device, v1::Extension extension,
-                      double timeout_s = kPatienceS) {
-    return bench.Until([&] { return Status(device).extension() == extension; }, timeout_s);
+  bool UntilExtension(const Device& device, v1::Extension extension) {
+    return bench.Until([&] { return Status(device).extension() == extension; });
+  }
+  bool ExtensionWithin(double seconds, const Device& device, v1::Extension extension) {
+    return bench.Within(seconds, [&] { return Status(device).extension() == extension; });
   }
   bool UntilNunchuk(const Device& device, std::size_t more) {
     const std::size_t wanted = Nunchuk(device).size() + more;
@@ -113,19 +115,19 @@ FOOTING_EXTENSION_FAULT(Fault27NunchukPulledAndPluggedInTheStream) {
   EXPECT_EQ(Status(device).extension_calibration(), v1::CALIBRATION_ORIGIN_DEVICE);
   const std::uint64_t changes = Status(device).extension_changes();
   Pull(device, *model);
-  ASSERT_TRUE(UntilExtension(device, v1::EXTENSION_NONE, 2));
+  ASSERT_TRUE(ExtensionWithin(2, device, v1::EXTENSION_NONE));
   for (const auto& sample : Nunchuk(device)) ExpectHeld(sample);
   bench.seen().Forget();
   ASSERT_TRUE(bench.UntilSamples(device, 50));
   EXPECT_TRUE(Nunchuk(device).empty());
   ExpectAllAtRest(device, 50);
   Plug(device, *model, Accessory::kNunchuk);
-  ASSERT_TRUE(UntilExtension(device, v1::EXTENSION_NUNCHUK, 2));
+  ASSERT_TRUE(ExtensionWithin(2, device, v1::EXTENSION_NUNCHUK));
   ASSERT_TRUE(UntilNunchuk(device, 20));
   for (const auto& sample : Nunchuk(device)) ExpectHeld(sample);
   ExpectAllAtRest(device, 50);
   EXPECT_EQ(Status(device).extension_changes(), changes + 2);
-  EXPECT_EQ(Status(device).state(), v1::DEVICE_STATE_LIVE);
+  EXPECT_TRUE(bench.UntilLive(device));
 }
 
 FOOTING_EXTENSION_FAULT(Fault28DeadWindowOfAnActivation) {

@@ -125,6 +125,9 @@ def evaluations(stage):
     stage.run_json("footing-eval", "spheres", "--distance-m", "1.5", "--frames", 1, "--out", frames)
     expect(stage, NO_DEVICE, f"footingd --source stream:{nobody}", "footing-camera", "--camera", frames / "camera.json",
            "--frames", frames, "--repeat", "--to", nobody, "--sensor", nobody, "--preview", "none", "--seconds", 1)
+    # The same for frames that end by themselves.
+    expect(stage, NO_DEVICE, f"footingd --source stream:{nobody}", "footing-camera", "--camera", frames / "camera.json",
+           "--frames", frames, "--to", nobody, "--sensor", nobody, "--preview", "none")
 
 
 def garbage(address):

@@ -60,7 +60,7 @@ def main(binaries):
         taken = stage.run("footing-camera", *words, f"unix:{path}")
         assert taken.returncode == 1 and "in use" in taken.stderr, taken
         assert stage.run("footing-camera", *words, "tcp:127.0.0.1:0").returncode == 2
-        assert stage.run("footing-camera", *words, "none").returncode == 0
+        assert stage.run("footing-camera", *words, "none").returncode == 3  # No footingd.
 
         assert stage.stop("footing-camera") == 0
         gone = look(stage, path, 0.5)

@@ -46,6 +46,9 @@ std::vector<transport::Channel> ChannelsNamed(
     const auto* const found = OfChannel(v1::Tick::descriptor()->FindFieldByName(name));
     if (found == nullptr) continue;
     const auto field = static_cast<std::uint32_t>(found->number());
+    const bool again = std::any_of(channels.begin(), channels.end(),
+                                   [&](const auto& channel) { return channel.field == field; });
+    if (again) continue;
     channels.push_back({name, field, KindOf(field) == ChannelKind::kRetained});
   }
   return channels;

@@ -23,7 +23,8 @@ ChannelKind KindOf(std::uint32_t field);
 /// The name of a channel; empty for a field that is none.
 std::string ChannelName(std::uint32_t field);
 
-/// The channels of these names, as a server publishes them; names that nobody knows are left out.
+/// The channels of these names, each once, as a server publishes them; names that nobody knows are
+/// left out.
 std::vector<transport::Channel> ChannelsNamed(
     const google::protobuf::RepeatedPtrField<std::string>& names);
 

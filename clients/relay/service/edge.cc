@@ -11,6 +11,7 @@
 #include "common/log/fields.h"
 #include "common/log/log.h"
 #include "common/transport/channels_of.h"
+#include "common/transport/socket.h"
 #include "common/transport/tick_rate.h"
 #include "common/units/units.h"
 
@@ -26,6 +27,16 @@ std::string NewInbox() {
   std::string inbox = "_INBOX.footing";
   for (int i = 0; i < 4; ++i) inbox += std::to_string(random());
   return inbox;
+}
+
+/// At most that many bytes of a text in UTF-8, and whole letters.
+std::string Beginning(const std::string& text, std::size_t most) {
+  std::size_t end = std::min(text.size(), most);
+  const auto continues = [&](std::size_t at) {
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80;
+  };
+  while (end > 0 && continues(end)) --end;
+  return text.substr(0, end);
 }
 
 v1::CommandResult RefuseCommand(const transport::SessionInfo&, const v1::Command& command) {
@@ -97,14 +108,29 @@ void Edge::OnMessage(const nats::Message& message) {
   }
   if (!parsed) return;
   if (envelope.has_pong()) {
-    const bool settled = probes_.settled();
-    probes_.Take(envelope.pong(), clock::MonotonicNs());
-    if (!settled) probes_.settled() ? AskForSnapshot() : Ask(probes_.Next(clock::MonotonicNs()));
+    OnPong(envelope.pong());
   } else if (envelope.has_welcome()) {
-    welcome_ = envelope.welcome();
+    OnWelcome(envelope.welcome());
   } else if (envelope.has_tick() && envelope.tick().snapshot()) {
     OnSnapshot(envelope.tick());
   }
+}
+
+void Edge::OnPong(const v1::Pong& pong) {
+  const bool settled = probes_.settled();
+  probes_.Take(pong, clock::MonotonicNs());
+  if (!settled) probes_.settled() ? AskForSnapshot() : Ask(probes_.Next(clock::MonotonicNs()));
+}
+
+void Edge::OnWelcome(const v1::Welcome& welcome) {
+  const bool other = welcome_.epoch() != 0 && welcome.epoch() != welcome_.epoch();
+  welcome_ = welcome;
+  if (!other) return;
+  if (server_) End(options_.server + " was started again");
+  // Perhaps on another host, or behind a start of this one: its clock comes first.
+  probes_.OnWelcome(true);
+  asked_ns_ = 0;
+  Ask(probes_.Next(clock::MonotonicNs()));
 }
 
 void Edge::Ask(const v1::Envelope& question) {
@@ -123,29 +149,31 @@ void Edge::AskForSnapshot() {
 void Edge::OnTick(const v1::Tick& tick) {
   if (!server_) return;  // The snapshot comes first.
   if (tick.epoch() != server_->epoch()) return AskForSnapshot();
-  heard_ns_ = clock::MonotonicNs();
   ++report_.ticks;
-  const std::uint64_t expected = thinner_->last_sequence() + 1;
+  const std::uint64_t last = thinner_->last_sequence();
   auto thinned = thinner_->Take({tick.sequence(), tick.host_ns()}, transport::ChannelsOf(tick));
-  if (tick.sequence() > expected) AskForSnapshot();  // A retained channel may have been among them.
+  if (thinner_->last_sequence() == last) return;  // Not a new one.
+  heard_ns_ = clock::MonotonicNs();
+  if (tick.sequence() > last + 1) {
+    wanted_ = tick.sequence();
+    AskForSnapshot();
+  }
   if (thinned) server_->Relay(thinned->number, std::move(thinned->channels));
 }
 
 void Edge::OnSnapshot(const v1::Tick& tick) {
-  if (welcome_.epoch() == 0 || tick.epoch() != welcome_.epoch()) return;
+  if (welcome_.epoch() == 0 || tick.epoch() != welcome_.epoch() || !probes_.settled()) return;
   if (!IsSound({tick.sequence(), tick.host_ns()})) return;
-  if (!server_ || server_->epoch() != tick.epoch()) {
-    if (server_) End(options_.server + " was started again");
-    return Begin(tick);
-  }
-  thinner_->TakeRetained(transport::ChannelsOf(tick));
+  if (tick.sequence() >= wanted_) wanted_ = 0;
+  if (!server_) return Begin(tick);
+  thinner_->TakeRetained(tick.sequence(), transport::ChannelsOf(tick));
 }
 
 transport::ServerOptions Edge::OptionsOf(const v1::Welcome& welcome) const {
   transport::ServerOptions options;
   options.server_id = options_.server;
   constexpr std::size_t kLongestVersion = 64;
-  options.version = welcome.version().substr(0, kLongestVersion) + " relayed";
+  options.version = Beginning(welcome.version(), kLongestVersion) + " relayed";
   options.channels = ChannelsNamed(welcome.channels());
   options.tick_rate_hz = transport::TickRateOf(welcome, options.tick_rate_hz);
   if (options_.rate_hz > 0) options.tick_rate_hz = std::min(options.tick_rate_hz, options_.rate_hz);
@@ -196,6 +224,7 @@ void Edge::Count(EdgeReport& report) const {
 void Edge::End(const std::string& reason) {
   Count(report_);
   server_->Stop(reason);
+  wanted_ = 0;
   former_ = std::move(server_);
   Say(reason);
 }
@@ -211,12 +240,13 @@ void Edge::ArmPulse() {
 
 void Edge::OnPulse() {
   const std::int64_t now_ns = clock::MonotonicNs();
+  if (transport::WasLate(pulse_)) heard_ns_ = now_ns;  // It was us who stood still.
   if (server_ && NanosecondsToSeconds(now_ns - heard_ns_) > options_.silent_after_s) {
     End("nothing comes from " + options_.server + " of " + options_.site + " any more");
   }
   if (!nats_.up()) return;
   Ask(probes_.Next(now_ns));
-  if (!server_ && probes_.settled()) AskForSnapshot();
+  if ((!server_ && probes_.settled()) || wanted_ != 0) AskForSnapshot();
 }
 
 void Edge::Say(const std::string& state) {

@@ -60,6 +60,8 @@ class Edge {
 
  private:
   void OnMessage(const nats::Message& message);
+  void OnPong(const v1::Pong& pong);
+  void OnWelcome(const v1::Welcome& welcome);
   void OnTick(const v1::Tick& tick);
   void OnSnapshot(const v1::Tick& tick);
   void Ask(const v1::Envelope& question);
@@ -82,7 +84,10 @@ class Edge {
   transport::ClockProbes probes_;
   v1::Welcome welcome_;
   std::int64_t asked_ns_ = 0;
-  std::int64_t heard_ns_ = 0;  ///< The last tick.
+  std::int64_t heard_ns_ = 0;  ///< The last tick that was new.
+  /// The state as of this sequence, or of a later one, must be fetched: a retained channel may have
+  /// been lost in front of it. 0: nothing was.
+  std::uint64_t wanted_ = 0;
   std::optional<Thinner> thinner_;
   std::unique_ptr<transport::Server> server_;
   std::unique_ptr<transport::Server> former_;  ///< Until its viewers have seen why.

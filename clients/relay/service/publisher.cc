@@ -12,7 +12,7 @@
 namespace footing::relay {
 namespace {
 
-/// A second, and at once; an edge asks 6 times when it starts, and once a second then.
+/// A second, and at once; an edge asks 6 times when it starts, and four times a second then.
 constexpr double kAnswersPerS = 500, kAnswersAtOnce = 1000;
 
 }  // namespace
@@ -118,7 +118,7 @@ void Publisher::PublishChannels(const Source& source, const v1::Tick& tick) {
     found = thinners_.emplace(tick.epoch(), fresh).first;
   }
   Thinner& thinner = found->second;
-  if (tick.snapshot()) return thinner.TakeRetained(transport::ChannelsOf(tick));
+  if (tick.snapshot()) return thinner.TakeRetained(tick.sequence(), transport::ChannelsOf(tick));
   const auto thinned = thinner.Take({tick.sequence(), tick.host_ns()}, transport::ChannelsOf(tick));
   if (!thinned) return;
   for (const transport::ChannelBytes& channel : thinned->channels) {
@@ -128,7 +128,7 @@ void Publisher::PublishChannels(const Source& source, const v1::Tick& tick) {
     if (mqtt_->Publish(topic, TickMessage(tick.epoch(), thinned->number, {channel}), retain)) {
       ++published_;
     } else if (retain) {
-      thinner.TakeRetained({channel});  // With the next tick, then.
+      thinner.TakeRetained(tick.sequence(), {channel});  // With the next tick, then.
     }
   }
 }
@@ -137,8 +137,9 @@ void Publisher::PublishChannels(const Source& source, const v1::Tick& tick) {
 void Publisher::RepeatRetained() {
   for (const auto& source : sources_) {
     const auto thinner = thinners_.find(source->epoch());
-    if (thinner != thinners_.end())
-      thinner->second.TakeRetained(transport::ChannelsOf(source->snapshot()));
+    if (thinner == thinners_.end()) continue;
+    const v1::Tick& snapshot = source->snapshot();
+    thinner->second.TakeRetained(snapshot.sequence(), transport::ChannelsOf(snapshot));
   }
 }
 

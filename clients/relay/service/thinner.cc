@@ -31,6 +31,7 @@ std::optional<Thinner::Thinned> Thinner::Take(const transport::TickNumber& numbe
       waiting_[channel.field] = std::move(channel.bytes);
     } else {
       retained_.erase(channel.field);
+      if (KindOf(channel.field) == ChannelKind::kRetained) came_[channel.field] = number.sequence;
       thinned.channels.push_back(std::move(channel));
     }
   }
@@ -49,11 +50,13 @@ std::optional<Thinner::Thinned> Thinner::Take(const transport::TickNumber& numbe
   return thinned;
 }
 
-void Thinner::TakeRetained(std::vector<transport::ChannelBytes> channels) {
+void Thinner::TakeRetained(std::uint64_t sequence, std::vector<transport::ChannelBytes> channels) {
   for (transport::ChannelBytes& channel : channels) {
-    if (KindOf(channel.field) == ChannelKind::kRetained) {
-      retained_[channel.field] = std::move(channel.bytes);
-    }
+    if (KindOf(channel.field) != ChannelKind::kRetained) continue;
+    std::uint64_t& came = came_[channel.field];
+    if (sequence < came) continue;
+    came = sequence;
+    retained_[channel.field] = std::move(channel.bytes);
   }
 }
 

@@ -37,8 +37,9 @@ class Thinner {
   std::optional<Thinned> Take(const transport::TickNumber& number,
                               std::vector<transport::ChannelBytes> channels);
 
-  /// Retained channels of a snapshot: they go with the next tick.
-  void TakeRetained(std::vector<transport::ChannelBytes> channels);
+  /// Retained channels of a snapshot, as of a sequence: they go with the next tick. Those that a
+  /// later tick has brought meanwhile are left alone.
+  void TakeRetained(std::uint64_t sequence, std::vector<transport::ChannelBytes> channels);
 
   std::uint64_t last_sequence() const { return last_sequence_; }
   std::uint64_t missing() const { return missing_; }    ///< Ticks that never came.
@@ -49,6 +50,7 @@ class Thinner {
   std::uint64_t last_sequence_;
   std::map<std::uint32_t, std::string> waiting_;  ///< Of channels of samples, by field.
   std::map<std::uint32_t, std::string> retained_;
+  std::map<std::uint32_t, std::uint64_t> came_;  ///< Sequence of a retained channel's last value.
   transport::Decimator decimator_;
   std::uint64_t missing_ = 0;
   std::uint64_t left_out_ = 0;

@@ -71,8 +71,14 @@ def main(program, writer):
         assert run("info", folder / "none.mcap").returncode == 1
         nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "n.mcap",
                      "--seconds", "0.2")
-        assert nobody.returncode == 3 and "none.sock" in nobody.stderr, nobody
-        assert run("info", folder / "n.mcap").returncode == 0
+        assert nobody.returncode == 3 and "none.sock" in nobody.stderr and "was removed" in nobody.stderr, nobody
+        assert not (folder / "n.mcap").exists()
+        (folder / "link.mcap").symlink_to(folder / "target.mcap")
+        (folder / "target.mcap").touch()
+        nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "link.mcap", "--force",
+                     "--seconds", "0.2")
+        assert nobody.returncode == 3 and "has no message" in nobody.stderr, nobody
+        assert run("info", folder / "link.mcap").returncode == 0  # What is somewhere else is complete, and stays.
         nobody = run("record", "--out", folder / "d.mcap", "--seconds", "0.2",
                      env=dict(os.environ, XDG_RUNTIME_DIR=str(folder)))
         for server in ("sensor.sock", "simulation.sock"):  # The default of every client.

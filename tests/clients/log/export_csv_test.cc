@@ -13,6 +13,7 @@
 namespace footing::log_client {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -69,6 +70,23 @@ TEST_F(ExportCsvTest, RowsSayTheirTimeTheirDevicesRoleAndTheirJointsNames) {
   EXPECT_THAT(characters, HasSubstr(",links_0_name,links_1_name,contacts_0_name\n"));
   EXPECT_THAT(characters, HasSubstr(",hips,leftknee,left_foot\n"));
   EXPECT_THAT(Bytes(Path("csv/footingd_status.csv")), HasSubstr(",recording_time_s,wall_time\n"));
+}
+
+TEST_F(ExportCsvTest, ATimeThatNoClockShowsHasNoWallTime) {
+  for (const std::int64_t begin_ns : {std::int64_t{5'000'000'000}, INT64_MIN}) {
+    {
+      test::MadeRecording recording(Path("a.mcap"));
+      recording.Begin("footingd", begin_ns, 1'760'000'005'000'000'000);
+      v1::Tick tick;
+      tick.set_sequence(1);
+      tick.set_host_ns(INT64_MAX);
+      tick.mutable_status()->add_devices()->set_device(7);
+      recording.Add(tick);
+    }
+    ASSERT_TRUE(ExportCsv(Path("a.mcap"), Path("csv"), true).ok());
+    EXPECT_THAT(Bytes(Path("csv/footingd_status.csv")), EndsWith(",0.000000000,\n"));
+    std::filesystem::remove(Path("a.mcap"));
+  }
 }
 
 TEST_F(ExportCsvTest, NeverOverwritesUnlessTold) {

@@ -131,15 +131,27 @@ TEST(Thinner, WithoutARateEveryTickComes) {
 
 TEST(Thinner, WhatASnapshotRetainsGoesWithTheNextTickUnlessThatHasANewerOne) {
   Thinner thinner(10, 100, 0);
-  thinner.TakeRetained({{kStatus, "old"}, {kMotion, "no state"}});
+  thinner.TakeRetained(0, {{kStatus, "old"}, {kMotion, "no state"}});
   auto thinned = TakeAt(thinner, 1, {{kStatus, "new"}});
   EXPECT_EQ(Fields(*thinned)[kStatus], "new");
-  thinner.TakeRetained({{kStatus, "again"}});
+  thinner.TakeRetained(1, {{kStatus, "again"}});
   thinned = TakeAt(thinner, 2, {});
   ASSERT_TRUE(thinned);
   EXPECT_EQ(Fields(*thinned)[kStatus], "again");
   EXPECT_EQ(Fields(*thinned).count(kMotion), 0u);
   EXPECT_FALSE(TakeAt(thinner, 3, {}));
+}
+
+TEST(Thinner, ASnapshotThatIsOlderThanAStateTakesItNotBack) {
+  Thinner thinner(10, 100, 0);
+  ASSERT_TRUE(TakeAt(thinner, 5, {{kStatus, "of 5"}}));
+  thinner.TakeRetained(4, {{kStatus, "of 4"}});
+  EXPECT_FALSE(TakeAt(thinner, 6, {}));
+  thinner.TakeRetained(6, {{kStatus, "of 6"}});
+  thinner.TakeRetained(5, {{kStatus, "of 5"}});  // It has not gone yet.
+  const auto thinned = TakeAt(thinner, 7, {});
+  ASSERT_TRUE(thinned);
+  EXPECT_EQ(Fields(*thinned)[kStatus], "of 6");
 }
 
 TEST(Channels, EveryChannelOfTheProtocolIsOfAKind) {
