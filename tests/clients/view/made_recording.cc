@@ -115,7 +115,8 @@ v1::Events EventsAt(int tick, bool trials) {
   const double time_s = 0.01 * tick;
   v1::Events events;
   if (tick == 2000) {
-    *events.add_events() = EventOf(v1::Event::KIND_GAIT_CHANGED, "gait changed: run to walk", time_s);
+    *events.add_events() =
+        EventOf(v1::Event::KIND_GAIT_CHANGED, "gait changed: run to walk", time_s);
     *events.add_events() = ResponseAt(time_s);
   }
   if (!trials) return events;
