@@ -11,7 +11,7 @@ struct StudyProgress {
   double mean_s = 0;       ///< Wall time of a session, mean of those that have ended.
 };
 
-/// ", 3 of 16 sessions; about 4 min left"; after the last one there is no time.
+/// ", 3 of 16 sessions; about 4 min left"; after the last one the count alone.
 std::string ProgressText(const StudyProgress& progress);
 
 }  // namespace footing::study::simulate
