@@ -118,6 +118,15 @@ TEST(HalfTurns, AMotionWithoutThemStaysAsItIs) {
   EXPECT_EQ(WithoutHalfTurns(squat).q, squat.q);
 }
 
+TEST(HalfTurns, ALegWhoseOtherSolutionHasTheAnkleElsewhereStaysAsItIs) {
+  Motion motion = Squat();
+  TurnByHalf(0, 100, 140, motion);
+  const auto landmarks = body::FindLandmarks(motion.skeleton).value();
+  const int ankle = landmarks[Landmark::kLeftAnkle];
+  motion.skeleton.joints[Index(ankle)].offset_m.x() += 0.05;  // No longer below the knee.
+  EXPECT_EQ(WithoutHalfTurns(motion).q, motion.q);
+}
+
 TEST(HalfTurns, ASkeletonWithoutLegsStaysAsItIs) {
   Motion motion = Squat();
   TurnByHalf(0, 100, 140, motion);
