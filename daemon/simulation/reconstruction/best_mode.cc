@@ -1,8 +1,25 @@
 #include "daemon/simulation/reconstruction/best_mode.h"
 
+#include <algorithm>
+
+#include "common/units/units.h"
 #include "daemon/simulation/reconstruction/pose_targets.h"
 
 namespace footing::reconstruction {
+namespace {
+
+/// The less the feet bear, the less their loads show where C is ahead and aside: it may be where
+/// hands and feet have it.
+void DoubtUnloaded(double mass_kg, Measurement& then) {
+  if (!then.posture_com_W_m) return;
+  momentum::Estimate& momentum = then.momentum;
+  const double load_n = momentum.feet[0].load_n + momentum.feet[1].load_n;
+  const double unloaded = std::clamp(1 - load_n / (mass_kg * kStandardGravityMps2), 0.0, 1.0);
+  const Eigen::Vector2d apart_m = (*then.posture_com_W_m - momentum.p_WC_m).head<2>();
+  momentum.position_variance_m2.head<2>() += (unloaded * apart_m).cwiseAbs2();
+}
+
+}  // namespace
 
 BestMode::BestMode(const SubjectModel& model, const Options& options)
     : state_(model, options),
@@ -30,7 +47,8 @@ void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output)
   ReportEstimate(now.momentum, state_.solver_resets, output);
   output.valid = output.valid && !now.momentum.stepped;
   output.posture_com_W_m = now.posture_com_W_m;
-  const Measurement then = Delayed(now);
+  Measurement then = Delayed(now);
+  DoubtUnloaded(estimate_.mass_kg(), then);
   truth_.Add(truth);
   const Truth& true_then = truth_.Back(static_cast<std::size_t>(state_.options.lag_steps()));
   SetTargets(then, true_then, output);

@@ -187,6 +187,29 @@ TEST(Reconstruction, IsNotValidWhileAFootHasJustSteppedAhead) {
   EXPECT_FALSE(reconstruction.output().valid);
 }
 
+TEST(Reconstruction, InFlightTheBodyMayBeWhereTheHandsAre) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate());
+  constexpr std::size_t kTakeOff = 400, kFlightFrames = 12;  // 0.2 s, at 0.6 m/s.
+  constexpr double kFrameM = 0.01;
+  for (std::size_t i = 0; i < kTakeOff; ++i) reconstruction.Advance(world.inputs[i]);
+  const Output stood = reconstruction.output();
+  for (std::size_t i = 1; i <= kFlightFrames; ++i) {
+    Inputs inputs = world.inputs[kTakeOff];
+    inputs.loads.time_s = world.inputs[kTakeOff + i - 1].loads.time_s;
+    for (momentum::FootLoads& foot : inputs.loads.feet) {
+      for (std::size_t k = 0; k < 4; ++k) foot.cells[k].load_n = 0;
+    }
+    for (HandInput& hand : inputs.hands) hand.p_W_m.x() += kFrameM * static_cast<double>(i);
+    reconstruction.Advance(inputs);
+  }
+  const Output& flown = reconstruction.output();
+  const double gone_m = stood.com_W_m.x() + kFrameM * kFlightFrames - flown.com_W_m.x();
+  EXPECT_GT(gone_m, 0.08) << "nothing but the hands shows it";
+  EXPECT_LT(gone_m, 2 * std::sqrt(flown.com_variance_m2.x()));
+  EXPECT_LT(std::sqrt(stood.com_variance_m2.x()), 0.05);
+}
+
 TEST(Reconstruction, ACopyGoesOnAsTheOriginalAndApartFromIt) {
   World world;
   Reconstruction original = world.Made(world.AtRate());
