@@ -39,6 +39,31 @@ TEST(Messages, TakeTheHandFromTheEditorAlone) {
   EXPECT_TRUE(hand.b);
 }
 
+TEST(Messages, TakeTheWholeHandFromTheFirstRigsEditor) {
+  v1::Tick tick;
+  AddDevice(tick, 7, v1::DEVICE_ROLE_EDITOR, 0.4);
+  AddDevice(tick, 3, v1::DEVICE_ROLE_EDITOR, 0.9);
+  for (const auto& [device, buttons] : {std::pair{3u, 0x0004u}, std::pair{7u, 0x0008u}}) {
+    v1::MotionSample& sample = *tick.mutable_motion()->add_samples();
+    sample.set_device(device);
+    sample.set_buttons(buttons);
+  }
+  std::uint32_t device = 0;
+  Hand hand;
+  EXPECT_TRUE(Take(tick, device, hand));
+  EXPECT_EQ(device, 7u);
+  EXPECT_EQ(hand.roll_rad, 0.4);
+  EXPECT_TRUE(hand.a);
+  EXPECT_FALSE(hand.b);
+  // A lost device stays in its rig, without an inclination.
+  tick.mutable_features()->mutable_rigs(0)->mutable_devices(0)->set_inclination_valid(false);
+  EXPECT_TRUE(Take(tick, device, hand));
+  EXPECT_EQ(device, 3u);
+  EXPECT_EQ(hand.roll_rad, 0.9);
+  EXPECT_FALSE(hand.a);
+  EXPECT_TRUE(hand.b);
+}
+
 TEST(Messages, KeepTheHandWhereATickSaysNothingOfIt) {
   std::uint32_t device = 7;
   Hand hand{true, 0.4, 0.2, true};
