@@ -16,15 +16,18 @@ void AddDevice(v1::Tick& tick, std::uint32_t device, v1::DeviceRole role, double
   features.set_pitch_rad(-roll_rad);
 }
 
+void AddButtons(v1::Tick& tick, std::uint32_t device, std::uint32_t buttons) {
+  v1::MotionSample& sample = *tick.mutable_motion()->add_samples();
+  sample.set_device(device);
+  sample.set_buttons(buttons);
+}
+
 TEST(Messages, TakeTheHandFromTheEditorAlone) {
   v1::Tick tick;
   AddDevice(tick, 1, v1::DEVICE_ROLE_LEFT_HAND, 0.9);
   AddDevice(tick, 7, v1::DEVICE_ROLE_EDITOR, 0.4);
-  for (const auto& [device, buttons] : {std::pair{1u, 0x000cu}, std::pair{7u, 0x0008u}}) {
-    v1::MotionSample& sample = *tick.mutable_motion()->add_samples();
-    sample.set_device(device);
-    sample.set_buttons(buttons);
-  }
+  AddButtons(tick, 1, 0x000c);
+  AddButtons(tick, 7, 0x0008);
   std::uint32_t device = 0;
   Hand hand;
   EXPECT_TRUE(Take(tick, device, hand));
@@ -43,11 +46,8 @@ TEST(Messages, TakeTheWholeHandFromTheFirstRigsEditor) {
   v1::Tick tick;
   AddDevice(tick, 7, v1::DEVICE_ROLE_EDITOR, 0.4);
   AddDevice(tick, 3, v1::DEVICE_ROLE_EDITOR, 0.9);
-  for (const auto& [device, buttons] : {std::pair{3u, 0x0004u}, std::pair{7u, 0x0008u}}) {
-    v1::MotionSample& sample = *tick.mutable_motion()->add_samples();
-    sample.set_device(device);
-    sample.set_buttons(buttons);
-  }
+  AddButtons(tick, 3, 0x0004);
+  AddButtons(tick, 7, 0x0008);
   std::uint32_t device = 0;
   Hand hand;
   EXPECT_TRUE(Take(tick, device, hand));
