@@ -17,6 +17,16 @@ Fault FaultOf(const v1::Failure& failure) {
           failure.withdrawn()};
 }
 
+/// Of the first rig whose editor sends samples; footingd sorts the rigs by name. Null when none.
+const v1::DeviceFeatures* EditorOf(const v1::Tick& tick) {
+  for (const v1::RigFeatures& rig : tick.features().rigs()) {
+    for (const v1::DeviceFeatures& one : rig.devices()) {
+      if (one.role() == v1::DEVICE_ROLE_EDITOR && one.inclination_valid()) return &one;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 void Take(const v1::Tick& tick, Collector& collector) {
@@ -30,23 +40,18 @@ void Take(const v1::Tick& tick, Collector& collector) {
 }
 
 bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand) {
-  bool inclined = false;
-  for (const v1::RigFeatures& rig : tick.features().rigs()) {
-    for (const v1::DeviceFeatures& one : rig.devices()) {
-      if (one.role() != v1::DEVICE_ROLE_EDITOR) continue;
-      device = one.device();
-      if (!one.inclination_valid()) continue;
-      hand.roll_rad = wire::Finite(one.roll_rad());
-      hand.pitch_rad = wire::Finite(one.pitch_rad());
-      inclined = true;
-    }
+  const v1::DeviceFeatures* editor = EditorOf(tick);
+  if (editor != nullptr) {
+    device = editor->device();
+    hand.roll_rad = wire::Finite(editor->roll_rad());
+    hand.pitch_rad = wire::Finite(editor->pitch_rad());
   }
   for (const v1::MotionSample& sample : tick.motion().samples()) {
     if (device == 0 || sample.device() != device) continue;
     hand.a = (sample.buttons() & kButtonA) != 0;
     hand.b = (sample.buttons() & kButtonB) != 0;
   }
-  return inclined;
+  return editor != nullptr;
 }
 
 v1::Command ToCommand(const Piece& piece) {

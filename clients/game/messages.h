@@ -11,8 +11,9 @@ namespace footing::game {
 /// Takes in what a tick of footing-sim reports of trials.
 void Take(const v1::Tick& tick, Collector& collector);
 
-/// The tick's last word on the device of the role editor, of any rig; `hand` stays where the tick
-/// says nothing. True when the tick knows how it is inclined.
+/// The tick's last word on the device of the role editor, of the first rig by name whose editor
+/// sends samples; `hand` stays where the tick says nothing. True when the tick knows how it is
+/// inclined.
 bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand);
 
 v1::Command ToCommand(const Piece& piece);

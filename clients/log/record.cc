@@ -161,17 +161,17 @@ class Recording {
           (waited_for.empty() ? "" : ", ") + recorder.address() + " (" + recorder.link() + ")";
       any_reached = any_reached || recorder.reached();
     }
-    if (const Result<void> finished = writer_.Finish(); !finished) return finished.error();
     const mcap::Statistics& statistics = writer_.statistics();
-    report.messages = statistics.message_count;
-    report.duration_s = 1e-9 * static_cast<double>(statistics.message_end_time_ns -
-                                                   statistics.message_start_time_ns);
-    if (report.messages == 0) {
-      const std::string why = "nothing came to record from " + waited_for + "; " + writer_.path() +
-                              (writer_.Remove() ? " was removed" : " has no message");
+    if (statistics.message_count == 0) {
+      const std::string why =
+          "nothing came to record from " + waited_for + "; " + writer_.path() + " was not written";
       return any_reached ? Failure(why)
                          : NoDevice(why + "; start the server, or name it with --connect");
     }
+    if (const Result<void> finished = writer_.Finish(); !finished) return finished.error();
+    report.messages = statistics.message_count;
+    report.duration_s = 1e-9 * static_cast<double>(statistics.message_end_time_ns -
+                                                   statistics.message_start_time_ns);
     return report;
   }
 

@@ -28,7 +28,8 @@ struct RecordReport {
 
 /// Records until the time is up or SIGINT or SIGTERM comes, then ends the file properly. Progress
 /// goes to standard error. A recording into which nothing came is a failure that says what was
-/// waited for, and leaves no file; a disk that is full is a failure, and the file stays repairable.
+/// waited for, and leaves no file, or the existing one as it was; a disk that is full is a failure,
+/// and the file stays repairable.
 Result<RecordReport> Record(const RecordOptions& options);
 
 }  // namespace footing::log_client

@@ -163,9 +163,9 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
   if (!link) return link.error();
   StageOptions wanted = options.stage;
   wanted.seconds = common.seconds;
-  auto made = MakeStage(wanted);
+  const auto made = MakeStage(wanted);
   if (!made) return made.error();
-  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const std::shared_ptr<const Stage>& stage = *made;
   Plan plan;
   for (const std::size_t foot : {0u, 1u}) {
     const std::uint64_t seed = DeviceSeed(common, foot + 1);

@@ -199,7 +199,7 @@ sensors::FootForce Stage::FootAt(std::size_t foot, double t_s) const {
   return out;
 }
 
-Result<Stage> MakeStage(const StageOptions& options) {
+Result<std::shared_ptr<const Stage>> MakeStage(const StageOptions& options) {
   const bool made = !IsPath(options.motion) || options.motion.ends_with(".json");
   auto scene = made ? PerformScript(options) : LoadRecording(options);
   if (!scene) return scene.error();
@@ -217,11 +217,12 @@ Result<Stage> MakeStage(const StageOptions& options) {
               (options.on_boards ? "on the boards" : "about the origin"));
   }
   stage.boards = sensors::OneFootEach(stage.gap_m);
-  if (!options.on_boards) return stage;
-  if (options.place_boards) FitBoards(stage);
-  stage.outside_share = OutsideShare(stage);
-  LogPlacement(stage, options.place_boards);
-  return stage;
+  if (options.on_boards) {
+    if (options.place_boards) FitBoards(stage);
+    stage.outside_share = OutsideShare(stage);
+    LogPlacement(stage, options.place_boards);
+  }
+  return std::make_shared<const Stage>(std::move(stage));
 }
 
 }  // namespace footing::stream_client

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,6 @@ struct Stage {
 /// Loads or performs the motion and stands it on the boards: the middle of both soles at the start
 /// is W's origin, the boards are 20 mm apart, left and right of it. Logs what it does and how the
 /// boards would have to lie.
-Result<Stage> MakeStage(const StageOptions& options);
+Result<std::shared_ptr<const Stage>> MakeStage(const StageOptions& options);
 
 }  // namespace footing::stream_client

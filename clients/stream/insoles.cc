@@ -52,9 +52,9 @@ Result<Plan> PlanInsoles(const InsolesOptions& options, const Common& common) {
   StageOptions wanted = options.stage;
   wanted.on_boards = false;
   wanted.seconds = common.seconds;
-  auto made = MakeStage(wanted);
+  const auto made = MakeStage(wanted);
   if (!made) return made.error();
-  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const std::shared_ptr<const Stage>& stage = *made;
   Plan plan;
   for (const std::size_t foot : {0u, 1u}) {
     plan.feeds.push_back(

@@ -28,40 +28,54 @@ Error CannotCreate(const std::string& path) {
                  (no_folder ? "; make its folder first: mkdir -p " + folder : ""));
 }
 
+/// Whether the path still names the open file.
+bool IsAt(const std::string& path, int descriptor) {
+  struct stat own, there;
+  return ::fstat(descriptor, &own) == 0 && ::lstat(path.c_str(), &there) == 0 &&
+         own.st_dev == there.st_dev && own.st_ino == there.st_ino;
+}
+
 }  // namespace
 
 Result<void> CheckCreatable(const std::string& path, bool replace) {
-  const bool exists = ::access(path.c_str(), F_OK) == 0;
-  if (exists && !replace) return FileExists(path);
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-  if (descriptor < 0) return CannotCreate(path);
-  ::close(descriptor);
-  if (!exists) ::unlink(path.c_str());
-  return {};
+  const Result<OutputFile> file = OutputFile::Create(path, replace);
+  return file ? Result<void>() : file.error();
 }
 
 Result<OutputFile> OutputFile::Create(const std::string& path, bool replace) {
-  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (replace ? O_TRUNC : O_EXCL);
-  const int descriptor = ::open(path.c_str(), flags, 0600);
-  if (descriptor >= 0) return OutputFile(path, descriptor);
-  if (errno == EEXIST) return FileExists(path);
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_CLOEXEC;
+  int descriptor = ::open(path.c_str(), kFlags | O_EXCL, 0600);
+  if (descriptor >= 0) return OutputFile(path, descriptor, /*created=*/true);
+  if (errno == EEXIST && !replace) return FileExists(path);
+  if (errno == EEXIST) descriptor = ::open(path.c_str(), kFlags, 0600);
+  if (descriptor >= 0) return OutputFile(path, descriptor, /*created=*/false);
   return CannotCreate(path);
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      created_(other.created_),
+      begun_(other.begun_) {}
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(descriptor_, other.descriptor_);
+  std::swap(created_, other.created_);
+  std::swap(begun_, other.begun_);
   return *this;
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ < 0) return;
+  if (created_ && !begun_ && IsAt(path_, descriptor_)) ::unlink(path_.c_str());
+  ::close(descriptor_);
 }
 
 Result<void> OutputFile::Write(std::string_view bytes) {
+  // EINVAL: a pipe or a device, which has nothing to empty.
+  if (!std::exchange(begun_, true) && ::ftruncate(descriptor_, 0) != 0 && errno != EINVAL)
+    return Failure("cannot empty " + path_ + ": " + std::strerror(errno));
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
@@ -75,13 +89,6 @@ Result<void> OutputFile::Sync() {
   // EINVAL: a pipe or a device, which has nothing to sync.
   if (::fdatasync(descriptor_) == 0 || errno == EINVAL) return {};
   return Failure("cannot write " + path_ + " to the disk: " + std::strerror(errno));
-}
-
-bool OutputFile::Remove() {
-  struct stat own, there;
-  if (::fstat(descriptor_, &own) != 0 || ::lstat(path_.c_str(), &there) != 0) return false;
-  const bool same = own.st_dev == there.st_dev && own.st_ino == there.st_ino;
-  return same && S_ISREG(own.st_mode) && ::unlink(path_.c_str()) == 0;
 }
 
 }  // namespace footing::recording

@@ -11,7 +11,8 @@ namespace footing::recording {
 Result<void> CheckCreatable(const std::string& path, bool replace);
 
 /// A new file that is written from its start to its end, readable by its owner alone: recordings
-/// are people's movements.
+/// are people's movements. Until the first Write() an existing file keeps its contents, and a file
+/// without one leaves the path as it was.
 class OutputFile {
  public:
   /// An existing file is a usage error that says so, unless `replace`.
@@ -23,21 +24,22 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
 
-  /// Hands all bytes to the kernel: they survive the end of this process.
+  /// Hands all bytes to the kernel: they survive the end of this process. The first call empties
+  /// an existing file.
   Result<void> Write(std::string_view bytes);
   /// Waits until the bytes are on the disk: they survive the loss of power.
   Result<void> Sync();
-  /// Removes the file; false where its path is not, or no longer, this very file: a device, or a
-  /// link to another place.
-  bool Remove();
 
   const std::string& path() const { return path_; }
 
  private:
-  OutputFile(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+  OutputFile(std::string path, int descriptor, bool created)
+      : path_(std::move(path)), descriptor_(descriptor), created_(created) {}
 
   std::string path_;
   int descriptor_ = -1;
+  bool created_ = false;  ///< Did not exist before.
+  bool begun_ = false;    ///< Write() was called.
 };
 
 }  // namespace footing::recording

@@ -10,9 +10,7 @@ Result<RecordingWriter> RecordingWriter::Create(const std::string& path,
                                                 const WriterSettings& settings) {
   Result<OutputFile> file = OutputFile::Create(path, settings.replace);
   if (!file) return file.error();
-  RecordingWriter writer(std::move(*file), settings);
-  if (const Result<void> written = writer.WriteDown(); !written) return written.error();
-  return writer;
+  return RecordingWriter(std::move(*file), settings);
 }
 
 RecordingWriter::RecordingWriter(OutputFile file, const WriterSettings& settings)
@@ -33,19 +31,19 @@ Result<void> RecordingWriter::Write(const std::string& topic,
 
 Result<void> RecordingWriter::AddMetadata(const std::string& name, const mcap::TextMap& values) {
   writer_.Add(mcap::Metadata{name, values});
-  return WriteDown();
+  return WriteDownOnceBegun();
 }
 
 Result<void> RecordingWriter::Attach(const std::string& name, const std::string& media_type,
                                      const std::string& bytes, std::int64_t log_ns) {
   const auto time = static_cast<std::uint64_t>(log_ns);
   writer_.Add(mcap::Attachment{time, time, name, media_type, bytes});
-  return WriteDown();
+  return WriteDownOnceBegun();
 }
 
 Result<void> RecordingWriter::Flush() {
   writer_.FlushChunk();
-  return WriteDown();
+  return WriteDownOnceBegun();
 }
 
 Result<void> RecordingWriter::Finish() {
@@ -64,6 +62,10 @@ std::uint16_t RecordingWriter::ChannelOf(const std::string& topic,
   const std::uint16_t channel = writer_.AddChannel(schema->second, topic, "protobuf", {});
   channels_.emplace(topic, channel);
   return channel;
+}
+
+Result<void> RecordingWriter::WriteDownOnceBegun() {
+  return statistics().message_count > 0 ? WriteDown() : Result<void>();
 }
 
 Result<void> RecordingWriter::WriteDown() {

@@ -25,7 +25,8 @@ struct Stamp {
 };
 
 /// Writes protobuf messages to a recording. Every closed chunk is written down and synced at once,
-/// so a recorder that dies loses no more than the chunk begun.
+/// so a recorder that dies loses no more than the chunk begun. Nothing is written down before the
+/// first message or Finish(): a recording without either leaves the path as it was.
 class RecordingWriter {
  public:
   static Result<RecordingWriter> Create(const std::string& path, const WriterSettings& settings);
@@ -40,8 +41,6 @@ class RecordingWriter {
   Result<void> Flush();
   /// Writes the index and the end. Nothing may be written afterwards.
   Result<void> Finish();
-  /// See OutputFile::Remove().
-  bool Remove() { return file_.Remove(); }
 
   /// Something is not yet written down.
   bool pending() const { return writer_.pending(); }
@@ -52,6 +51,7 @@ class RecordingWriter {
   RecordingWriter(OutputFile file, const WriterSettings& settings);
 
   std::uint16_t ChannelOf(const std::string& topic, const google::protobuf::Descriptor& type);
+  Result<void> WriteDownOnceBegun();
   Result<void> WriteDown();
 
   OutputFile file_;

@@ -1,9 +1,9 @@
-"""The page of footing-skeleton --web, without a person and, where there are a browser and the npm package
+"""The page of footing-skeleton --web: its drawing, where there is node; without a person and, where there are a browser and the npm package
 @mediapipe/pose, in headless Chromium: files and refusals over HTTP; joints that the page makes of a synthetic
 person reach footingd; the pose model loads from this host and runs on the frames of a generated video, in
 which it finds nobody, and of a photograph, whose person's joints reach footingd.
 
-Usage: skeleton_page.py BINARY_FOLDER (http|synthetic|model|person)
+Usage: skeleton_page.py BINARY_FOLDER (http|figure|synthetic|model|person)
 """
 import http.client
 import json
@@ -100,9 +100,9 @@ def check_http(stage):
     status, text, headers = get(port, "/?source=synthetic")
     assert status == 200 and "page.js" in text and headers["Content-Type"].startswith("text/html"), (status, text)
     assert "http" not in headers["Content-Security-Policy"], "nothing from another host"
-    for name in ("page.js", "landmarks.js", "page.css"):
+    for name in ("page.js", "figure.js", "landmarks.js", "page.css"):
         assert get(port, "/" + name)[0] == 200, name
-    for name in ("index.html", "page.js", "landmarks.js", "page.css"):
+    for name in ("index.html", "page.js", "figure.js", "landmarks.js", "page.css"):
         assert "https:" not in get(port, "/" + name)[1], f"{name} names another host"
     assert get(port, "/pose/pose.js")[1] == "// a model\n"
     for target in ("/pose/../secret", "/pose/%2e%2e/secret", "/pose/", "/pose/.hidden", "/secret", "/pose/none.js"):
@@ -113,6 +113,51 @@ def check_http(stage):
     stage.processes["skeleton"].send_signal(signal.SIGINT)
     web = statistics(stage, 20)["web"]
     assert web["pages"] == 1 and web["refused"] == 8, web
+
+
+# The bones drawn of the synthetic person: landmarks of both ends, width and opacity of the line.
+DRAW = """
+import { drawFigure } from './figure.js';
+import { syntheticLandmarks } from './landmarks.js';
+const image = syntheticLandmarks(0, 640, 480, 60).image;
+const at = (x, y) => image.findIndex(one => one.visibility > 0 && one.x * 640 === x && one.y * 480 === y);
+function bones() {
+  const lines = [];
+  let from;
+  drawFigure({ beginPath() {}, arc() {}, fill() {}, stroke() {}, moveTo(x, y) { from = at(x, y); },
+               lineTo(x, y) { lines.push([from, at(x, y), this.lineWidth, this.globalAlpha]); } }, image, 640, 480);
+  return lines;
+}
+const whole = bones();
+image[13].visibility = 0.5;
+image[26].visibility = 0.1;
+console.log(JSON.stringify([whole, bones()]));
+"""
+
+
+def check_figure(stage):
+    """A line a bone; the left elbow inferred: both its bones are thinner and paler; the right knee lost: none."""
+    port = serve(stage, 0, "--no-publish")
+    for name in ("figure.js", "landmarks.js"):
+        (stage.folder / name).write_text(get(port, "/" + name)[1])
+    (stage.folder / "package.json").write_text('{"type": "module"}')
+    (stage.folder / "draw.js").write_text(DRAW)
+    done = subprocess.run(["node", stage.folder / "draw.js"], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done
+    whole, part = ({frozenset(line[:2]): line[2:] for line in lines} for lines in json.loads(done.stdout))
+    trunk = [(11, 12), (11, 23), (12, 24), (23, 24)]
+    left = [(11, 13), (13, 15), (15, 17), (15, 19), (17, 19), (23, 25), (25, 27)]
+    right = [(a + 1, b + 1) for a, b in left]
+    assert set(whole) == set(map(frozenset, trunk + left + right)), whole
+    assert len(set(map(tuple, whole.values()))) == 1, whole
+    inferred = {frozenset((11, 13)), frozenset((13, 15))}
+    assert set(whole) - set(part) == {frozenset((24, 26)), frozenset((26, 28))}, part
+    for bone, (width, opacity) in part.items():
+        full_width, full_opacity = whole[bone]
+        paler = width < full_width and opacity < full_opacity
+        assert paler if bone in inferred else [width, opacity] == whole[bone], (bone, part)
+    stage.processes["skeleton"].send_signal(signal.SIGINT)
+    statistics(stage, 20)
 
 
 def check_missing_package(stage):
@@ -187,12 +232,14 @@ def check_person(stage):
 
 def main():
     part = sys.argv[2]
-    if part != "http" and not shutil.which("chromium"):
+    if part == "figure" and not shutil.which("node"):
+        skip("node is missing")
+    if part not in ("http", "figure") and not shutil.which("chromium"):
         skip("chromium is missing; scripts/dependencies-web.txt lists what this test needs")
     if part in ("model", "person") and not (PACKAGE / "pose.js").is_file():
         skip("@mediapipe/pose is missing; run scripts/fetch-pose-model")
-    checks = {"http": (check_http, check_missing_package), "synthetic": (check_synthetic,), "model": (check_model,),
-              "person": (check_person,)}
+    checks = {"http": (check_http, check_missing_package), "figure": (check_figure,),
+              "synthetic": (check_synthetic,), "model": (check_model,), "person": (check_person,)}
     for check in checks[part]:
         with harness.Stage(sys.argv[1]) as stage:
             check(stage)

@@ -16,15 +16,18 @@ void AddDevice(v1::Tick& tick, std::uint32_t device, v1::DeviceRole role, double
   features.set_pitch_rad(-roll_rad);
 }
 
+void AddButtons(v1::Tick& tick, std::uint32_t device, std::uint32_t buttons) {
+  v1::MotionSample& sample = *tick.mutable_motion()->add_samples();
+  sample.set_device(device);
+  sample.set_buttons(buttons);
+}
+
 TEST(Messages, TakeTheHandFromTheEditorAlone) {
   v1::Tick tick;
   AddDevice(tick, 1, v1::DEVICE_ROLE_LEFT_HAND, 0.9);
   AddDevice(tick, 7, v1::DEVICE_ROLE_EDITOR, 0.4);
-  for (const auto& [device, buttons] : {std::pair{1u, 0x000cu}, std::pair{7u, 0x0008u}}) {
-    v1::MotionSample& sample = *tick.mutable_motion()->add_samples();
-    sample.set_device(device);
-    sample.set_buttons(buttons);
-  }
+  AddButtons(tick, 1, 0x000c);
+  AddButtons(tick, 7, 0x0008);
   std::uint32_t device = 0;
   Hand hand;
   EXPECT_TRUE(Take(tick, device, hand));
@@ -35,6 +38,28 @@ TEST(Messages, TakeTheHandFromTheEditorAlone) {
   EXPECT_FALSE(hand.b);
   tick.mutable_motion()->mutable_samples(1)->set_buttons(0x0004);
   Take(tick, device, hand);
+  EXPECT_FALSE(hand.a);
+  EXPECT_TRUE(hand.b);
+}
+
+TEST(Messages, TakeTheWholeHandFromTheFirstRigsEditor) {
+  v1::Tick tick;
+  AddDevice(tick, 7, v1::DEVICE_ROLE_EDITOR, 0.4);
+  AddDevice(tick, 3, v1::DEVICE_ROLE_EDITOR, 0.9);
+  AddButtons(tick, 3, 0x0004);
+  AddButtons(tick, 7, 0x0008);
+  std::uint32_t device = 0;
+  Hand hand;
+  EXPECT_TRUE(Take(tick, device, hand));
+  EXPECT_EQ(device, 7u);
+  EXPECT_EQ(hand.roll_rad, 0.4);
+  EXPECT_TRUE(hand.a);
+  EXPECT_FALSE(hand.b);
+  // A lost device stays in its rig, without an inclination.
+  tick.mutable_features()->mutable_rigs(0)->mutable_devices(0)->set_inclination_valid(false);
+  EXPECT_TRUE(Take(tick, device, hand));
+  EXPECT_EQ(device, 3u);
+  EXPECT_EQ(hand.roll_rad, 0.9);
   EXPECT_FALSE(hand.a);
   EXPECT_TRUE(hand.b);
 }

@@ -71,14 +71,16 @@ def main(program, writer):
         assert run("info", folder / "none.mcap").returncode == 1
         nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "n.mcap",
                      "--seconds", "0.2")
-        assert nobody.returncode == 3 and "none.sock" in nobody.stderr and "was removed" in nobody.stderr, nobody
+        assert nobody.returncode == 3 and "none.sock" in nobody.stderr and "was not written" in nobody.stderr, nobody
         assert not (folder / "n.mcap").exists()
-        (folder / "link.mcap").symlink_to(folder / "target.mcap")
-        (folder / "target.mcap").touch()
-        nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "link.mcap", "--force",
-                     "--seconds", "0.2")
-        assert nobody.returncode == 3 and "has no message" in nobody.stderr, nobody
-        assert run("info", folder / "link.mcap").returncode == 0  # What is somewhere else is complete, and stays.
+        (folder / "link.mcap").symlink_to(whole)
+        recorded = whole.read_bytes()
+        for old in (whole, folder / "link.mcap"):
+            nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", old, "--force", "--seconds", "0.2")
+            assert nobody.returncode == 3 and "was not written" in nobody.stderr, nobody
+            assert whole.read_bytes() == recorded and old.exists(), "the old recording stays"
+        missing = run("record", "--connect", f"unix:{folder}/none.sock", "--out", whole, "--force", "--attach", folder / "none.json")
+        assert missing.returncode == 1 and whole.read_bytes() == recorded, missing
         nobody = run("record", "--out", folder / "d.mcap", "--seconds", "0.2",
                      env=dict(os.environ, XDG_RUNTIME_DIR=str(folder)))
         for server in ("sensor.sock", "simulation.sock"):  # The default of every client.

@@ -106,7 +106,7 @@ TEST_F(BoardsTest, ACameraSeesTheSpheresInTheFists) {
     ASSERT_TRUE(found[static_cast<std::size_t>(side)]);
     const Eigen::Vector3d p_W_m = *camera.X_WC * found[static_cast<std::size_t>(side)]->p_C_m;
     // Depth to some 5 mm at 2 m, and up to 8 ms of a hand's motion from row to row.
-    EXPECT_LT((p_W_m - FistAt(stage, side, kT_s)).norm(), 0.04) << side;
+    EXPECT_LT((p_W_m - FistAt(*stage, side, kT_s)).norm(), 0.04) << side;
   }
 }
 
@@ -172,8 +172,7 @@ TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
 }
 
 TEST_F(BoardsTest, TheBoardsTotalAndCopAreThoseOfTheMotion) {
-  const auto stage = MakeStage(options_.stage);
-  ASSERT_TRUE(stage);
+  const auto stage = *MakeStage(options_.stage);
   const auto& scene = stage->scene;
   for (double t_s = 0.05; t_s < stage->duration_s(); t_s += 0.0917) {
     double total_n = 0;
@@ -197,24 +196,22 @@ TEST_F(BoardsTest, TheBoardsTotalAndCopAreThoseOfTheMotion) {
 }
 
 TEST_F(BoardsTest, AScriptGoesOnAndARecordingStaysAtItsEnd) {
-  auto stage = MakeStage(options_.stage);
-  ASSERT_TRUE(stage);
-  const double end_s = stage->duration_s();
-  EXPECT_EQ(stage->At(end_s + 0.305).frame, stage->At(0.305).frame);
-  stage->repeats = false;
-  EXPECT_EQ(stage->At(end_s + 0.3).frame, stage->scene.motion.frames() - 2);
-  EXPECT_EQ(stage->At(end_s + 0.3).share, 1);
-  EXPECT_EQ(stage->At(-1).frame, 0);
+  Stage stage = **MakeStage(options_.stage);
+  const double end_s = stage.duration_s();
+  EXPECT_EQ(stage.At(end_s + 0.305).frame, stage.At(0.305).frame);
+  stage.repeats = false;
+  EXPECT_EQ(stage.At(end_s + 0.3).frame, stage.scene.motion.frames() - 2);
+  EXPECT_EQ(stage.At(end_s + 0.3).share, 1);
+  EXPECT_EQ(stage.At(-1).frame, 0);
 }
 
 TEST_F(BoardsTest, BoardsLaidUnderWideFeetLieFurtherApart) {
   std::ofstream(path_) << R"({"keys": [{"seconds": 0.5}, {"seconds": 0.8, "weight": -1},
       {"seconds": 0.6, "left_out_m": 0.22}, {"seconds": 0.8, "weight": 1},
       {"seconds": 0.6, "right_out_m": 0.22}, {"seconds": 0.8, "weight": 0}, {"seconds": 9}]})";
-  const auto as_always = MakeStage(options_.stage);
+  const auto as_always = *MakeStage(options_.stage);
   options_.stage.place_boards = true;
-  const auto placed = MakeStage(options_.stage);
-  ASSERT_TRUE(as_always && placed);
+  const auto placed = *MakeStage(options_.stage);
   EXPECT_DOUBLE_EQ(as_always->gap_m, 0.02);
   EXPECT_GT(as_always->outside_share, 0.5);
   EXPECT_GT(placed->gap_m, 0.05);
@@ -223,9 +220,7 @@ TEST_F(BoardsTest, BoardsLaidUnderWideFeetLieFurtherApart) {
 }
 
 TEST_F(BoardsTest, HandsAreSeenWhereTheFistsAreWithTheNoiseAskedFor) {
-  auto made = MakeStage(options_.stage);
-  ASSERT_TRUE(made);
-  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const auto stage = *MakeStage(options_.stage);
   const Feed feed = HandFeed(stage, 0.02, 7);
   Feed first = feed, second = feed;
   double square = 0;
@@ -253,9 +248,7 @@ TEST_F(BoardsTest, HandsAreSeenWhereTheFistsAreWithTheNoiseAskedFor) {
 }
 
 TEST_F(BoardsTest, TheReferenceIsTheWholePoseAndFitsIntoAMessage) {
-  auto made = MakeStage(options_.stage);
-  ASSERT_TRUE(made);
-  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const auto stage = *MakeStage(options_.stage);
   const stream::ReferenceFrame frame = PoseFeed(stage).reference(3.02);
   const auto& skeleton = stage->scene.body.skeleton;
   ASSERT_EQ(static_cast<int>(frame.parents.size()), skeleton.size());
@@ -289,9 +282,7 @@ TEST(ShownJoints, OfALargeSkeletonAreThoseOnTheWayToALandmark) {
 }
 
 TEST_F(BoardsTest, AWiimoteInTheFistFeelsGravityAndTurnsWithTheArm) {
-  auto made = MakeStage(options_.stage);
-  ASSERT_TRUE(made);
-  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const auto stage = *MakeStage(options_.stage);
   constexpr int kDevices = 8;
   double felt_mps2 = 0;
   for (int device = 0; device < kDevices; ++device) {
@@ -317,9 +308,7 @@ TEST_F(BoardsTest, AWiimoteInTheFistFeelsGravityAndTurnsWithTheArm) {
 }
 
 TEST_F(BoardsTest, ACopyOfAWiimotesMotionBeginsAnew) {
-  auto made = MakeStage(options_.stage);
-  ASSERT_TRUE(made);
-  const SimulatedDevice::WiimoteMotion motion = InFist(std::make_shared<const Stage>(*made), 0, 5);
+  const SimulatedDevice::WiimoteMotion motion = InFist(*MakeStage(options_.stage), 0, 5);
   SimulatedDevice::WiimoteMotion one = motion, other = motion;
   for (int i = 0; i < 5; ++i) one(0.01 * i);
   EXPECT_NE(one(0.05).specific_force_S_mps2, other(0.05).specific_force_S_mps2);

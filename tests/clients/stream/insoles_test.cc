@@ -46,9 +46,7 @@ TEST_F(InsolesTest, BothInsolesAndTheTruePoseAreToldAndNoDeviceIsThere) {
 
 TEST_F(InsolesTest, TheCellsCarryTheFootsLoadAtItsCop) {
   options_.stage.on_boards = false;
-  auto made = MakeStage(options_.stage);
-  ASSERT_TRUE(made);
-  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const auto stage = *MakeStage(options_.stage);
   for (const std::size_t foot : {0u, 1u}) {
     Feed feed = InsoleFeed(stage, foot, {}, 1);
     for (double t_s = 0.05; t_s < stage->duration_s(); t_s += 0.31) {
@@ -72,9 +70,7 @@ TEST_F(InsolesTest, TheCellsCarryTheFootsLoadAtItsCop) {
 
 TEST_F(InsolesTest, NoiseAndGainsAreAsAskedForAndTheSameForASeed) {
   options_.stage.on_boards = false;
-  auto made = MakeStage(options_.stage);
-  ASSERT_TRUE(made);
-  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const auto stage = *MakeStage(options_.stage);
   Feed exact = InsoleFeed(stage, 0, {}, 1);
   Feed noisy = InsoleFeed(stage, 0, {0.1, 0}, 5);
   Feed again = InsoleFeed(stage, 0, {0.1, 0}, 5);

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <utility>
 
 #include "tests/common/temporary_folder.h"
 
@@ -36,6 +38,54 @@ TEST(CheckCreatable, SaysWhatCreateWouldSay) {
   EXPECT_THAT(nowhere.error().message,
               HasSubstr("No such file or directory; make its folder first: mkdir -p " +
                         folder.Path("none")));
+}
+
+std::string Contents(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(OutputFile, KeepsAnExistingFileUntilTheFirstWrite) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("table");
+  std::ofstream(path) << "an old table";
+  {
+    const auto unused = OutputFile::Create(path, true);
+    ASSERT_TRUE(unused);
+  }
+  EXPECT_EQ(Contents(path), "an old table");
+  auto file = OutputFile::Create(path, true);
+  ASSERT_TRUE(file);
+  EXPECT_EQ(Contents(path), "an old table");
+  ASSERT_TRUE(file->Write("new"));
+  ASSERT_TRUE(file->Write(" one"));
+  EXPECT_EQ(Contents(path), "new one");
+}
+
+TEST(OutputFile, LeavesNothingWhereNothingWasWritten) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("table");
+  {
+    auto file = OutputFile::Create(path, false);
+    ASSERT_TRUE(file);
+    const OutputFile moved = std::move(*file);
+    EXPECT_TRUE(std::filesystem::exists(path));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+  ASSERT_TRUE(OutputFile::Create(path, false)->Write(""));
+  EXPECT_TRUE(std::filesystem::exists(path)) << "an empty file was asked for";
+}
+
+TEST(OutputFile, LeavesAloneWhatTookItsPlace) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("table");
+  {
+    const auto file = OutputFile::Create(path, false);
+    ASSERT_TRUE(file);
+    std::filesystem::remove(path);
+    std::ofstream(path) << "another's";
+  }
+  EXPECT_EQ(Contents(path), "another's");
 }
 
 }  // namespace

@@ -106,6 +106,23 @@ TEST_F(Recording, NeverOverwritesUnlessTold) {
   EXPECT_TRUE(RecordingWriter::Create(Path("a.mcap"), {"test", true, {}}).ok());
 }
 
+TEST_F(Recording, ReplacesAnExistingOneAtItsFirstMessage) {
+  WriteMotion(Path("a.mcap"), 100);
+  const auto old_bytes = std::filesystem::file_size(Path("a.mcap"));
+  auto writer = RecordingWriter::Create(Path("a.mcap"), {"test", true, {}});
+  ASSERT_TRUE(writer.ok());
+  ASSERT_TRUE(writer->AddMetadata("session", {{"server", "footingd"}}).ok());
+  ASSERT_TRUE(writer->Attach("config.json", "application/json", "{}", 0).ok());
+  ASSERT_TRUE(writer->Flush().ok());
+  EXPECT_EQ(std::filesystem::file_size(Path("a.mcap")), old_bytes);
+  ASSERT_TRUE(writer->Write("/footingd/gaps", v1::Gap(), {0, 0, 0}).ok());
+  ASSERT_TRUE(writer->Finish().ok());
+  const auto session = RecordedSession::Open(Path("a.mcap"));
+  ASSERT_TRUE(session.ok());
+  ASSERT_EQ(session->metadata().size(), 1u);
+  EXPECT_EQ(session->metadata()[0].name, "session") << "of before the first message";
+}
+
 TEST_F(Recording, IsReadableByItsOwnerAlone) {
   WriteMotion(Path("a.mcap"), 1);
   EXPECT_EQ(std::filesystem::status(Path("a.mcap")).permissions(),

@@ -172,6 +172,7 @@ TEST_F(StreamRecorderTest, AMessageThatDoesNotParseIsNamed) {
 }
 
 TEST_F(StreamRecorderTest, ACutRecordingNamesItsRepair) {
+  ASSERT_TRUE(writer_->Write("/footingd/gaps", v1::Gap(), {0, 0, 0}).ok());
   const auto session = RecordedSession::Open(path_);  // Not finished.
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().kind, ErrorKind::kInvalidData);

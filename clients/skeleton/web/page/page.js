@@ -1,5 +1,6 @@
 // A webcam's frames through the pose model of npm's @mediapipe/pose, all of it in this browser, and
 // the joints to footing-skeleton, which serves this page.
+import { drawFigure } from './figure.js';
 import { encode, syntheticLandmarks, toJoints } from './landmarks.js';
 
 const canvas = document.getElementById('picture');
@@ -31,13 +32,7 @@ function connect() {
 function draw(picture, landmarks) {
   context.clearRect(0, 0, canvas.width, canvas.height);
   if (picture) context.drawImage(picture, 0, 0, canvas.width, canvas.height);
-  context.fillStyle = '#ffb02e';
-  for (const one of landmarks ?? []) {
-    if ((one.visibility ?? 0) < 0.25) continue;
-    context.beginPath();
-    context.arc(one.x * canvas.width, one.y * canvas.height, 4, 0, 2 * Math.PI);
-    context.fill();
-  }
+  if (landmarks) drawFigure(context, landmarks, canvas.width, canvas.height);
 }
 
 // One exposure, made at unixMs; `image` and `world` are the model's landmarks, if it found any.
