@@ -130,6 +130,7 @@ TEST_F(EdgeTest, AServerThatStartsAgainSendsViewersToItsNewEpochAndClock) {
   EXPECT_NEAR(static_cast<double>(viewer_->clock().offset_ns), static_cast<double>(ahead_ns_), 1e6);
   Publish(5);
   ASSERT_TRUE(RunUntil([&] { return viewed_.Has(5); }));
+  EXPECT_EQ(edge_->report().missing, 0u);
   EXPECT_FALSE(broken_);
 }
 
@@ -148,6 +149,7 @@ TEST_F(EdgeTest, SilenceSendsViewersAwayAndTheServersReturnBringsThemBack) {
   ASSERT_EQ(viewed_.gaps.size(), 1u);
   EXPECT_EQ(viewed_.gaps[0].from_sequence(), 502u);
   EXPECT_EQ(viewed_.gaps[0].to_sequence(), 900u);
+  EXPECT_EQ(edge_->report().missing, 399u);
 }
 
 TEST_F(EdgeTest, AForgedSequenceDoesNotMakeItDeafForGood) {
