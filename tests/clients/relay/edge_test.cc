@@ -103,6 +103,18 @@ TEST_F(EdgeTest, ASnapshotThatIsOlderThanATickTakesNoStateBack) {
   EXPECT_EQ(viewed_.state, "new");
 }
 
+TEST_F(EdgeTest, ASnapshotThatIsOlderThanTheFirstTakesNoStateBack) {
+  ASSERT_TRUE(Serve(500, "new"));
+  RunFor(1);
+  Stand(400, "old");  // Of another publisher, which is behind.
+  Deliver(TickOf(502));
+  ASSERT_TRUE(RunUntil([&] { return asked_ >= 2; }));
+  Settle();
+  Deliver(TickOf(503));
+  ASSERT_TRUE(RunUntil([&] { return viewed_.Has(503); }));
+  EXPECT_EQ(viewed_.state, "new");
+}
+
 TEST_F(EdgeTest, ATickThatComesTwiceGoesOnOnce) {
   ASSERT_TRUE(Serve(500, "a"));
   ASSERT_TRUE(Arrives(501));
