@@ -140,7 +140,7 @@ class Session : public std::enable_shared_from_this<Session> {
   bool FillCatchUp(WriteBatch& batch);
   bool FillRefill(WriteBatch& batch);
   void AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason, WriteBatch& batch);
-  void AddMissing(const Tick& tick, WriteBatch& batch);
+  void AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch);
   bool Takes(const Tick& tick);
   TickHead Head(bool refilled) const;
 

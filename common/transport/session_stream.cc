@@ -136,9 +136,11 @@ void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reaso
   batch.AddOwned(Frame(message.SerializeAsString()));
 }
 
-void Session::AddMissing(const Tick& tick, WriteBatch& batch) {
-  if (tick.missing_from == 0) return;
-  AddGap(tick.missing_from, tick.sequence - 1, v1::Gap::REASON_UNSPECIFIED, batch);
+/// Of the hole in front of a tick, what is not before `from`: the rest is known already.
+void Session::AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch) {
+  from = std::max(from, tick.missing_from);
+  if (tick.missing_from == 0 || from >= tick.sequence) return;
+  AddGap(from, tick.sequence - 1, v1::Gap::REASON_UNSPECIFIED, batch);
 }
 
 void Session::Fill(WriteBatch& batch) {
@@ -191,7 +193,7 @@ bool Session::FillLive(WriteBatch& batch) {
     const std::uint64_t to = missing != 0 ? entry.tick->sequence - 1 : dropped->to;
     AddGap(dropped->from, to, v1::Gap::REASON_QUEUE_FULL, batch);
   } else {
-    AddMissing(*entry.tick, batch);
+    AddMissing(*entry.tick, 0, batch);
   }
   AddTick(entry, subscription_, Head(false), batch);
   ++record_.ticks_sent;
@@ -211,10 +213,10 @@ bool Session::FillCatchUp(WriteBatch& batch) {
     return true;
   }
   const SharedTick& tick = *ring.AtOrAfter(replay_.catch_up);
-  replay_.catch_up = tick->sequence + 1;
+  const std::uint64_t from = std::exchange(replay_.catch_up, tick->sequence + 1);
   connection_.Charge(kReplayCost);
   if (Takes(*tick)) {
-    AddMissing(*tick, batch);
+    AddMissing(*tick, from, batch);
     AddTick({tick, {}}, subscription_, Head(true), batch);
     ++record_.ticks_sent;
   } else {

@@ -159,13 +159,17 @@ bool Bench::Within(double seconds, const std::function<bool()>& holds) {
   return Until([&] { return holds() || undisturbed_ns_ >= end_ns; }) && holds();
 }
 
+bool Bench::IsIn(const std::string& serial, v1::DeviceState state) const {
+  const v1::DeviceStatus* status = seen_.Status(serial);
+  return status != nullptr && status->state() == state;
+}
+
+bool Bench::IsLive(const Device& device) const {
+  return IsIn(device.serial(), v1::DEVICE_STATE_LIVE) && Samples(device) > 0;
+}
+
 bool Bench::UntilState(const std::string& serial, v1::DeviceState state, double timeout_s) {
-  return Until(
-      [&] {
-        const v1::DeviceStatus* status = seen_.Status(serial);
-        return status != nullptr && status->state() == state;
-      },
-      timeout_s);
+  return Until([&] { return IsIn(serial, state); }, timeout_s);
 }
 
 bool Bench::UntilLive(const Device& device, double timeout_s) {

@@ -133,6 +133,9 @@ class Bench {
   /// How many descriptors footingd has open.
   std::size_t Descriptors() const;
   std::size_t Samples(const Device& device) const;
+  bool IsIn(const std::string& serial, v1::DeviceState state) const;
+  /// Live, and samples of it have come since the last Forget().
+  bool IsLive(const Device& device) const;
 
  private:
   std::string folder_;

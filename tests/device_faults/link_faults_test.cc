@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 
@@ -86,10 +87,8 @@ FOOTING_FAULT(Fault38SameSerialUnderAnotherNumber) {
   // It returns before the old node has ended.
   old->sampling = false;
   Device* next = &bench.Plug(Wiimote(38), {.number = 7});
-  const std::int64_t back_ns = clock::MonotonicNs();
   bench.seen().Forget();
-  ASSERT_TRUE(bench.UntilSamples(*next, 1, 2));
-  EXPECT_LT(clock::MonotonicNs() - back_ns, 1'000'000'000);
+  ASSERT_TRUE(bench.Within(1, [&] { return bench.Samples(*next) > 0; }));
   bench.Unplug(*old);
   bench.Run(0.3);
   ASSERT_TRUE(bench.UntilSamples(*next, 20));
@@ -99,10 +98,8 @@ FOOTING_FAULT(Fault38SameSerialUnderAnotherNumber) {
   bench.Unplug(*next);
   ASSERT_TRUE(bench.UntilState(serial, v1::DEVICE_STATE_LOST));
   bench.seen().Forget();
-  const std::int64_t again_ns = clock::MonotonicNs();
   Device& third = bench.Plug(Wiimote(38), {.number = 3});
-  ASSERT_TRUE(bench.UntilSamples(third, 1, 2));
-  EXPECT_LT(clock::MonotonicNs() - again_ns, 1'000'000'000);
+  ASSERT_TRUE(bench.Within(1, [&] { return bench.Samples(third) > 0; }));
   EXPECT_EQ(Status(third).device(), number);
   EXPECT_EQ(Status(third).role(), role);
   EXPECT_EQ(bench.seen().devices(), 1u);
@@ -165,9 +162,7 @@ FOOTING_FAULT(Fault42NodeWithoutPermission) {
   // The rule is there now; udev says "change".
   device.node().page().open_errno = 0;
   bench.testbed().Announce(device.number(), device.model().identity(), "change");
-  const std::int64_t from_ns = clock::MonotonicNs();
-  ASSERT_TRUE(bench.UntilLive(device));
-  EXPECT_LT(clock::MonotonicNs() - from_ns, 1'000'000'000);
+  ASSERT_TRUE(bench.Within(1, [&] { return bench.IsLive(device); }));
   ExpectAllAtRest(device, 1);
 }
 
@@ -180,10 +175,7 @@ FOOTING_FAULT(Fault43NodeBeforeItsAttributesAndPermissions) {
   // 0.1 s later all is set; no event tells, and the look at old nodes comes once a second.
   shut.node().page().open_errno = 0;
   bench.testbed().Identify(nameless.number(), nameless.model().identity());
-  const std::int64_t from_ns = clock::MonotonicNs();
-  ASSERT_TRUE(bench.UntilLive(shut));
-  ASSERT_TRUE(bench.UntilLive(nameless));
-  EXPECT_LT(clock::MonotonicNs() - from_ns, 900'000'000);
+  ASSERT_TRUE(bench.Within(0.9, [&] { return bench.IsLive(shut) && bench.IsLive(nameless); }));
   EXPECT_EQ(bench.LogLines("cannot open"), 0u);  // It was nothing to complain about.
   EXPECT_EQ(bench.seen().devices(), 2u);
   ExpectAllAtRest(nameless, 1);
@@ -203,15 +195,14 @@ FOOTING_FAULT(Fault44AdapterReset) {
     ASSERT_TRUE(bench.UntilState(status.serial(), v1::DEVICE_STATE_LOST));
   }
   bench.seen().Forget();
-  const std::int64_t back_ns = clock::MonotonicNs();
   // They return in another order.
   for (int i = 3; i >= 0; --i) devices[i] = &bench.Plug(Wiimote(440 + i));
+  const auto sends = [&](const Device* device) { return bench.Samples(*device) > 0; };
+  ASSERT_TRUE(bench.Within(1, [&] { return std::all_of(devices.begin(), devices.end(), sends); }));
   for (int i = 0; i < 4; ++i) {
-    ASSERT_TRUE(bench.UntilSamples(*devices[i], 1));
     EXPECT_EQ(Status(*devices[i]).device(), before[i].device());
     EXPECT_EQ(Status(*devices[i]).role(), before[i].role());
   }
-  EXPECT_LT(clock::MonotonicNs() - back_ns, 1'000'000'000);
   EXPECT_EQ(bench.seen().devices(), 4u);
 }
 

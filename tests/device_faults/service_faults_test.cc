@@ -124,7 +124,7 @@ FOOTING_SERVICE_FAULT(Fault58GarbageAndHugeLengths) {
     RudeClient client(Socket());
     ASSERT_TRUE(client.connected());
     client.Say(one);
-    EXPECT_TRUE(bench.Until([&] { return client.Closed(); }, 2)) << one;  // Not by Hello's 3 s.
+    EXPECT_TRUE(bench.Within(2, [&] { return client.Closed(); })) << one;  // Not by Hello's 3 s.
   }
   ASSERT_TRUE(bench.UntilSamples(device, 60));
   ExpectUndisturbed(device);
@@ -145,7 +145,7 @@ FOOTING_SERVICE_FAULT(Fault59ClientsThatVanishHalfWay) {
   ASSERT_TRUE(bench.UntilSamples(device, 30));
   ExpectUndisturbed(device);
   // At once, not when they are missed.
-  EXPECT_TRUE(bench.Until([&] { return bench.Descriptors() <= before; }, 2))
+  EXPECT_TRUE(bench.Within(2, [&] { return bench.Descriptors() <= before; }))
       << bench.Descriptors() << " of " << before;
 }
 

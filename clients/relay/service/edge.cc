@@ -195,6 +195,10 @@ void Edge::Begin(const v1::Tick& snapshot) {
   handlers.on_overload = [](const transport::OverloadLine& line) {
     log::Write(log::Level::kWarning, line.text, {"", line.session, line.channel});
   };
+  // What the silence before took: viewers who resume get it as a Gap.
+  const bool again = former_ && former_->epoch() == options.epoch;
+  if (again && snapshot.sequence() > thinner_->last_sequence())
+    report_.missing += snapshot.sequence() - thinner_->last_sequence();
   server_ = std::make_unique<transport::Server>(io_, options, handlers);
   thinner_.emplace(options_.rate_hz, transport::TickRateOf(welcome_, options.tick_rate_hz),
                    snapshot.sequence());

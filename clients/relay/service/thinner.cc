@@ -14,6 +14,7 @@ bool IsSound(const transport::TickNumber& number) {
 
 Thinner::Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence)
     : rate_hz_(rate_hz),
+      begin_(last_sequence),
       last_sequence_(last_sequence),
       decimator_(rate_hz, PeriodNanoseconds(tick_rate_hz)) {}
 
@@ -51,6 +52,7 @@ std::optional<Thinner::Thinned> Thinner::Take(const transport::TickNumber& numbe
 }
 
 void Thinner::TakeRetained(std::uint64_t sequence, std::vector<transport::ChannelBytes> channels) {
+  if (sequence < begin_) return;
   for (transport::ChannelBytes& channel : channels) {
     if (KindOf(channel.field) != ChannelKind::kRetained) continue;
     std::uint64_t& came = came_[channel.field];

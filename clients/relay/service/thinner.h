@@ -38,7 +38,8 @@ class Thinner {
                               std::vector<transport::ChannelBytes> channels);
 
   /// Retained channels of a snapshot, as of a sequence: they go with the next tick. Those that a
-  /// later tick has brought meanwhile are left alone.
+  /// later tick has brought meanwhile are left alone; all, when the snapshot is older than the
+  /// `last_sequence` of the beginning.
   void TakeRetained(std::uint64_t sequence, std::vector<transport::ChannelBytes> channels);
 
   std::uint64_t last_sequence() const { return last_sequence_; }
@@ -47,6 +48,7 @@ class Thinner {
 
  private:
   double rate_hz_;
+  std::uint64_t begin_;  ///< Older retained channels are of no use.
   std::uint64_t last_sequence_;
   std::map<std::uint32_t, std::string> waiting_;  ///< Of channels of samples, by field.
   std::map<std::uint32_t, std::string> retained_;

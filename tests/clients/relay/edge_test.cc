@@ -103,6 +103,18 @@ TEST_F(EdgeTest, ASnapshotThatIsOlderThanATickTakesNoStateBack) {
   EXPECT_EQ(viewed_.state, "new");
 }
 
+TEST_F(EdgeTest, ASnapshotThatIsOlderThanTheFirstTakesNoStateBack) {
+  ASSERT_TRUE(Serve(500, "new"));
+  RunFor(1);
+  Stand(400, "old");  // Of another publisher, which is behind.
+  Deliver(TickOf(502));
+  ASSERT_TRUE(RunUntil([&] { return asked_ >= 2; }));
+  Settle();
+  Deliver(TickOf(503));
+  ASSERT_TRUE(RunUntil([&] { return viewed_.Has(503); }));
+  EXPECT_EQ(viewed_.state, "new");
+}
+
 TEST_F(EdgeTest, ATickThatComesTwiceGoesOnOnce) {
   ASSERT_TRUE(Serve(500, "a"));
   ASSERT_TRUE(Arrives(501));
@@ -130,6 +142,7 @@ TEST_F(EdgeTest, AServerThatStartsAgainSendsViewersToItsNewEpochAndClock) {
   EXPECT_NEAR(static_cast<double>(viewer_->clock().offset_ns), static_cast<double>(ahead_ns_), 1e6);
   Publish(5);
   ASSERT_TRUE(RunUntil([&] { return viewed_.Has(5); }));
+  EXPECT_EQ(edge_->report().missing, 0u);
   EXPECT_FALSE(broken_);
 }
 
@@ -148,6 +161,7 @@ TEST_F(EdgeTest, SilenceSendsViewersAwayAndTheServersReturnBringsThemBack) {
   ASSERT_EQ(viewed_.gaps.size(), 1u);
   EXPECT_EQ(viewed_.gaps[0].from_sequence(), 502u);
   EXPECT_EQ(viewed_.gaps[0].to_sequence(), 900u);
+  EXPECT_EQ(edge_->report().missing, 399u);
 }
 
 TEST_F(EdgeTest, AForgedSequenceDoesNotMakeItDeafForGood) {

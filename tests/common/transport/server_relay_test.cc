@@ -101,6 +101,20 @@ TEST_F(ServerRelayTest, AResumeGetsTicksAndGapsOutOfTheRing) {
   EXPECT_EQ(client->Sequences()[4], 1004u);
 }
 
+TEST_F(ServerRelayTest, AResumeGetsNoNumberTwice) {
+  StartRelay();
+  Relay(1010, 1001);
+  Relay(1020, 1011);
+  // The ring begins behind a hole that is within the Gap of the resume.
+  const auto before = Subscribed(ResumeFrom(990));
+  ASSERT_TRUE(WaitForTick(*before, 1020));
+  EXPECT_EQ(Gaps(*before), (Pairs{{990, 1009}, {1011, 1019}}));
+  // Another relay of the same server had a part of what is missing here.
+  const auto within = Subscribed(ResumeFrom(1015));
+  ASSERT_TRUE(WaitForTick(*within, 1020));
+  EXPECT_EQ(Gaps(*within), (Pairs{{1015, 1019}}));
+}
+
 TEST_F(ServerRelayTest, ADroppedTickTakesItsGapIntoTheGapOfTheQueue) {
   StartRelay();
   const auto client = Connect();
