@@ -1,7 +1,7 @@
-"""The page of footing-skeleton --web: its drawing, where there is node; without a person and, where there are a browser and the npm package
-@mediapipe/pose, in headless Chromium: files and refusals over HTTP; joints that the page makes of a synthetic
-person reach footingd; the pose model loads from this host and runs on the frames of a generated video, in
-which it finds nobody, and of a photograph, whose person's joints reach footingd.
+"""The page of footing-skeleton --web: its files and refusals over HTTP; the bones that it draws, where there is
+node; and, where there are a browser and the npm package @mediapipe/pose, in headless Chromium: joints that the page
+makes of a synthetic person reach footingd; the pose model loads from this host and runs on the frames of a generated
+video, in which it finds nobody, and of a photograph, whose person's joints reach footingd.
 
 Usage: skeleton_page.py BINARY_FOLDER (http|figure|synthetic|model|person)
 """

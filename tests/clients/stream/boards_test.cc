@@ -20,6 +20,7 @@
 #include "common/frames/netpbm.h"
 #include "common/sphere/find.h"
 #include "common/units/units.h"
+#include "tests/clients/stream/made_stage.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::stream_client {
@@ -101,7 +102,7 @@ TEST_F(BoardsTest, ACameraSeesTheSpheresInTheFists) {
   const auto camera = *frames::ParseCameraFile(DemoCameraFile(), "demo");
   sphere::Finder finder(camera.lens, camera.Targets(), camera.settings);
   const auto found = finder.Find(frame->View());
-  const auto stage = *MakeStage(options_.stage);
+  const auto stage = MadeStage(options_.stage);
   for (int side : {0, 1}) {
     ASSERT_TRUE(found[static_cast<std::size_t>(side)]);
     const Eigen::Vector3d p_W_m = *camera.X_WC * found[static_cast<std::size_t>(side)]->p_C_m;
@@ -172,7 +173,7 @@ TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
 }
 
 TEST_F(BoardsTest, TheBoardsTotalAndCopAreThoseOfTheMotion) {
-  const auto stage = *MakeStage(options_.stage);
+  const auto stage = MadeStage(options_.stage);
   const auto& scene = stage->scene;
   for (double t_s = 0.05; t_s < stage->duration_s(); t_s += 0.0917) {
     double total_n = 0;
@@ -196,7 +197,7 @@ TEST_F(BoardsTest, TheBoardsTotalAndCopAreThoseOfTheMotion) {
 }
 
 TEST_F(BoardsTest, AScriptGoesOnAndARecordingStaysAtItsEnd) {
-  Stage stage = **MakeStage(options_.stage);
+  Stage stage = *MadeStage(options_.stage);
   const double end_s = stage.duration_s();
   EXPECT_EQ(stage.At(end_s + 0.305).frame, stage.At(0.305).frame);
   stage.repeats = false;
@@ -209,9 +210,9 @@ TEST_F(BoardsTest, BoardsLaidUnderWideFeetLieFurtherApart) {
   std::ofstream(path_) << R"({"keys": [{"seconds": 0.5}, {"seconds": 0.8, "weight": -1},
       {"seconds": 0.6, "left_out_m": 0.22}, {"seconds": 0.8, "weight": 1},
       {"seconds": 0.6, "right_out_m": 0.22}, {"seconds": 0.8, "weight": 0}, {"seconds": 9}]})";
-  const auto as_always = *MakeStage(options_.stage);
+  const auto as_always = MadeStage(options_.stage);
   options_.stage.place_boards = true;
-  const auto placed = *MakeStage(options_.stage);
+  const auto placed = MadeStage(options_.stage);
   EXPECT_DOUBLE_EQ(as_always->gap_m, 0.02);
   EXPECT_GT(as_always->outside_share, 0.5);
   EXPECT_GT(placed->gap_m, 0.05);
@@ -220,7 +221,7 @@ TEST_F(BoardsTest, BoardsLaidUnderWideFeetLieFurtherApart) {
 }
 
 TEST_F(BoardsTest, HandsAreSeenWhereTheFistsAreWithTheNoiseAskedFor) {
-  const auto stage = *MakeStage(options_.stage);
+  const auto stage = MadeStage(options_.stage);
   const Feed feed = HandFeed(stage, 0.02, 7);
   Feed first = feed, second = feed;
   double square = 0;
@@ -248,7 +249,7 @@ TEST_F(BoardsTest, HandsAreSeenWhereTheFistsAreWithTheNoiseAskedFor) {
 }
 
 TEST_F(BoardsTest, TheReferenceIsTheWholePoseAndFitsIntoAMessage) {
-  const auto stage = *MakeStage(options_.stage);
+  const auto stage = MadeStage(options_.stage);
   const stream::ReferenceFrame frame = PoseFeed(stage).reference(3.02);
   const auto& skeleton = stage->scene.body.skeleton;
   ASSERT_EQ(static_cast<int>(frame.parents.size()), skeleton.size());
@@ -282,7 +283,7 @@ TEST(ShownJoints, OfALargeSkeletonAreThoseOnTheWayToALandmark) {
 }
 
 TEST_F(BoardsTest, AWiimoteInTheFistFeelsGravityAndTurnsWithTheArm) {
-  const auto stage = *MakeStage(options_.stage);
+  const auto stage = MadeStage(options_.stage);
   constexpr int kDevices = 8;
   double felt_mps2 = 0;
   for (int device = 0; device < kDevices; ++device) {
@@ -308,7 +309,7 @@ TEST_F(BoardsTest, AWiimoteInTheFistFeelsGravityAndTurnsWithTheArm) {
 }
 
 TEST_F(BoardsTest, ACopyOfAWiimotesMotionBeginsAnew) {
-  const SimulatedDevice::WiimoteMotion motion = InFist(*MakeStage(options_.stage), 0, 5);
+  const SimulatedDevice::WiimoteMotion motion = InFist(MadeStage(options_.stage), 0, 5);
   SimulatedDevice::WiimoteMotion one = motion, other = motion;
   for (int i = 0; i < 5; ++i) one(0.01 * i);
   EXPECT_NE(one(0.05).specific_force_S_mps2, other(0.05).specific_force_S_mps2);

@@ -9,6 +9,7 @@
 
 #include "common/units/units.h"
 #include "common/virtual/sensors/insole_cells.h"
+#include "tests/clients/stream/made_stage.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::stream_client {
@@ -46,7 +47,7 @@ TEST_F(InsolesTest, BothInsolesAndTheTruePoseAreToldAndNoDeviceIsThere) {
 
 TEST_F(InsolesTest, TheCellsCarryTheFootsLoadAtItsCop) {
   options_.stage.on_boards = false;
-  const auto stage = *MakeStage(options_.stage);
+  const auto stage = MadeStage(options_.stage);
   for (const std::size_t foot : {0u, 1u}) {
     Feed feed = InsoleFeed(stage, foot, {}, 1);
     for (double t_s = 0.05; t_s < stage->duration_s(); t_s += 0.31) {
@@ -70,7 +71,7 @@ TEST_F(InsolesTest, TheCellsCarryTheFootsLoadAtItsCop) {
 
 TEST_F(InsolesTest, NoiseAndGainsAreAsAskedForAndTheSameForASeed) {
   options_.stage.on_boards = false;
-  const auto stage = *MakeStage(options_.stage);
+  const auto stage = MadeStage(options_.stage);
   Feed exact = InsoleFeed(stage, 0, {}, 1);
   Feed noisy = InsoleFeed(stage, 0, {0.1, 0}, 5);
   Feed again = InsoleFeed(stage, 0, {0.1, 0}, 5);
