@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/units/units.h"
+#include "daemon/simulation/momentum/horizontal_doubt.h"
 
 namespace footing::momentum {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kAloftShare = 0.05;    // Nobody touches them.
 constexpr double kFlightS = 0.12;       // Shorter than any jump.
 constexpr double kMostSpread = 1.0;     // m, m/s: more than this is unknown.
 // How far the COM of bodies that step is from where the filters place it, forwards and sideways.
-const Eigen::Vector2d kSteppedSpreadM(0.15, 0.05);
+constexpr std::array<double, 2> kSteppedSpreadM{0.15, 0.05};
 constexpr std::size_t kMostBoardCells = 4;  // Insoles have more, and follow steps.
 
 }  // namespace
@@ -59,11 +60,15 @@ BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, c
                             HorizontalCom::kSlots - 1)),
       horizontal_{HorizontalCom(config.forward, {}, pose.mass_kg, step_s),
                   HorizontalCom(config.lateral, config.lateral_posture, pose.mass_kg, step_s)},
+      travelling_{
+          HorizontalCom(Travelling(config.forward), TravellingPosture(), pose.mass_kg, step_s),
+          HorizontalCom(Travelling(config.lateral), TravellingPosture(), pose.mass_kg, step_s)},
       vertical_(pose.mass_kg, step_s, subject.arms_hang_m, pose.cell_noise_n,
                 config.height_posture),
       contacts_{FootContact(config.contact), FootContact(config.contact)},
       places_{FootPlace(subject.feet[0], config.place), FootPlace(subject.feet[1], config.place)} {
   for (HorizontalCom& axis : horizontal_) axis.KeepLag(lag_steps_);
+  for (HorizontalCom& axis : travelling_) axis.KeepLag(lag_steps_);
   vertical_.KeepLag(lag_steps_);
   for (std::size_t f = 0; f < kFeet; ++f) places_[f].Start(pose.p_WP_m[f]);
   Begin();
@@ -72,8 +77,11 @@ BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, c
 
 void BestEstimator::Begin() {
   const Eigen::Vector2d centre = Centre();
-  horizontal_[0].Start(pose_.cop_m.x(), centre.x());
-  horizontal_[1].Start(pose_.cop_m.y(), centre.y());
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    horizontal_[i].Start(pose_.cop_m(axis), centre(axis));
+    travelling_[i].Start(pose_.cop_m(axis), centre(axis));
+  }
   vertical_.Start(pose_.mean_loads);
   load_share_ = {};
   step_watch_.Start(FeetForward());
@@ -131,6 +139,7 @@ void BestEstimator::LandElsewhere(const ContactLoads& loads) {
   const Eigen::Vector2d centre = Centre();
   for (int i = 0; i < 2; ++i) {
     horizontal_[static_cast<std::size_t>(i)].Land(both.p_WP_m(i), centre(i));
+    travelling_[static_cast<std::size_t>(i)].Land(both.p_WP_m(i), centre(i));
   }
   vertical_.Land();
   estimate_.angular_momentum_kgm2ps.setZero();
@@ -179,29 +188,39 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
     input.com_height_m = height;
     input.centre_m = centre(i);
     horizontal_[static_cast<std::size_t>(i)].Advance(input);
+    travelling_[static_cast<std::size_t>(i)].Advance(input);
   }
-  ReportCom();
+  ReportCom(false);
 }
 
-const Estimate& BestEstimator::SeePosture(double lateral_W_m, double height_W_m) {
-  if (!estimate_.valid || !std::isfinite(lateral_W_m) || !std::isfinite(height_W_m)) {
+const Estimate& BestEstimator::SeePosture(double lateral_W_m, const Eigen::Vector3d& likely_W_m) {
+  if (!estimate_.valid || !std::isfinite(lateral_W_m) || !likely_W_m.allFinite()) {
     return estimate_;
   }
   horizontal_[1].SeePosture(lateral_W_m);
-  vertical_.SeePosture(height_W_m - subject_.com_height_m);
-  ReportCom();
+  travelling_[0].SeePosture(likely_W_m.x());
+  travelling_[1].SeePosture(likely_W_m.y());
+  vertical_.SeePosture(likely_W_m.z() - subject_.com_height_m);
+  ReportCom(true);
   return estimate_;
 }
 
-void BestEstimator::ReportCom() {
+HorizontalCom::Filter::Scalar BestEstimator::PlaceOn(std::size_t axis, bool sees_posture) const {
+  HorizontalCom::Filter::Scalar place = horizontal_[axis].Position(lag_steps_);
+  const double doubt_m2 = DoubtOf(horizontal_[axis], estimate_.stepped, kSteppedSpreadM[axis]);
+  if (doubt_m2 <= 0) return place;
+  if (sees_posture) return Weigh(place, doubt_m2, travelling_[axis].Position(lag_steps_));
+  place.variance += doubt_m2;
+  return place;
+}
+
+void BestEstimator::ReportCom(bool sees_posture) {
   estimate_.trusted = vertical_.trusted() && estimate_.whole_weight;
   for (int i = 0; i < 2; ++i) {
     const HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
-    const auto position = axis.Position(lag_steps_);
+    const auto position = PlaceOn(static_cast<std::size_t>(i), sees_posture);
     estimate_.p_WC_m(i) = position.mean;
-    const double stepped_m = estimate_.stepped ? kSteppedSpreadM(i) : 0;
-    estimate_.position_variance_m2(i) =
-        std::min(position.variance + stepped_m * stepped_m, kMostSpread);
+    estimate_.position_variance_m2(i) = std::min(position.variance, kMostSpread);
     estimate_.v_WC_mps(i) = axis.Velocity().mean;
     estimate_.velocity_variance_m2ps2(i) = std::min(axis.Velocity().variance, kMostSpread);
     estimate_.a_WC_mps2(i) = axis.Acceleration().mean;

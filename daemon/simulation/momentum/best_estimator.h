@@ -49,10 +49,10 @@ class BestEstimator {
   /// finite, make the frame a gap: the estimate coasts, its covariance grows, and after a second
   /// it restarts when loads come again (`resets`).
   const Estimate& Advance(const ContactLoads& loads);
-  /// Where C is by hands and feet alone, in the frame of the last Advance: its place along the
-  /// lateral axis and its height are estimated again. What is not finite, or comes in a gap, is
-  /// passed over.
-  const Estimate& SeePosture(double lateral_W_m, double height_W_m);
+  /// Where C is by hands and feet alone, in the frame of the last Advance: by the mean of all poses
+  /// along the lateral axis, and by poses that were found to go with hands and feet. C is estimated
+  /// again. What is not finite, or comes in a gap, is passed over.
+  const Estimate& SeePosture(double lateral_W_m, const Eigen::Vector3d& likely_W_m);
   const Estimate& estimate() const { return estimate_; }
   const VerticalBank& vertical() const { return vertical_; }
   /// Weighed in the T-pose, and again where what came after contradicts that.
@@ -65,7 +65,9 @@ class BestEstimator {
   void WatchFlight(const ContactLoads& loads, bool gap, double total_n);
   void AdvanceFeet(const ContactLoads& loads);
   void AdvanceCom(const ContactLoads& loads, bool gap);
-  void ReportCom();
+  void ReportCom(bool sees_posture);
+  /// One axis of the horizontal place.
+  HorizontalCom::Filter::Scalar PlaceOn(std::size_t axis, bool sees_posture) const;
   void AdvanceAngular();
   Eigen::Vector2d Centre() const;
   std::array<double, kFeet> FeetForward() const;
@@ -76,6 +78,7 @@ class BestEstimator {
   double step_s_;
   int lag_steps_;
   std::array<HorizontalCom, 2> horizontal_;
+  std::array<HorizontalCom, 2> travelling_;
   VerticalBank vertical_;
   std::array<FootContact, kFeet> contacts_;
   std::array<FootPlace, kFeet> places_;

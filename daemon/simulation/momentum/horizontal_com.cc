@@ -19,6 +19,9 @@ constexpr double kFlightAcceleration = 0.3;  // m/s², standard deviation around
 constexpr double kLeastRatio = 2.0;          // 1/s², of load / mass / height.
 constexpr double kLandsBesideM = 0.15;       // The body from the COP, when feet come down.
 constexpr double kLeastHeight = 0.4;         // m
+// A body surprises at once, and is in place again only some time after. One COP alone counts for no
+// more than this, and those of an impact say nothing of where a body goes that has just landed.
+constexpr double kSurpriseTimeS = 0.2, kCalmTimeS = 1, kMostSurprise = 100, kImpactS = 0.3;
 
 Matrix3 Companion(const HorizontalPrior::Part& part) {
   const double p = part.pole_radps, w = part.frequency_radps, zeta = part.damping;
@@ -60,7 +63,7 @@ Matrix3 Exponential(const Matrix3& a, double h) {
 
 HorizontalCom::HorizontalCom(const HorizontalPrior& prior, const PostureError& posture,
                              double mass_kg, double step_s)
-    : prior_(prior), posture_(posture), mass_kg_(mass_kg) {
+    : prior_(prior), posture_(posture), mass_kg_(mass_kg), step_s_(step_s) {
   a_.setZero();
   stationary_.setZero();
   int at = 0;
@@ -85,6 +88,7 @@ HorizontalCom::HorizontalCom(const HorizontalPrior& prior, const PostureError& p
 
 void HorizontalCom::Start(double c_m, double centre_m) {
   centre_m_ = centre_m;
+  surprise_ = 0;
   filter_.Start(Filter::Vector::Zero(), stationary_);
   filter_.Update(position_, c_m - centre_m, 1e-4);
   filter_.Update(velocity_, 0, 1e-4);
@@ -94,6 +98,7 @@ void HorizontalCom::Start(double c_m, double centre_m) {
 
 void HorizontalCom::Land(double cop_m, double centre_m) {
   centre_m_ = centre_m;
+  surprise_ = landed_s_ = 0;
   filter_.Start(Filter::Vector::Zero(), stationary_);
   filter_.Update(position_, cop_m - centre_m, kLandsBesideM * kLandsBesideM);
   filter_.Remember(position_, centre_m_);
@@ -105,17 +110,24 @@ void HorizontalCom::Advance(const HorizontalInput& input) {
   shift(0) = centre_m_ - input.centre_m;  // c stays where it is when the centre moves.
   centre_m_ = input.centre_m;
   filter_.Predict(a_, shift, q_);
+  landed_s_ += step_s_;
   if (input.cop_valid && input.load_n > kLeastLoadShare * weight_n) {
     const double height = std::max(input.com_height_m, kLeastHeight);
     const double ratio = std::max(input.load_n / mass_kg_ / height, kLeastRatio);
     Filter::Row h = position_ - prior_.beta / ratio * acceleration_;
     h(6) = weight_n / input.load_n;  // e is a moment: its arm grows as the load falls.
     const double noise = prior_.cop_noise_m * weight_n / input.load_n;
-    filter_.Update(h, input.cop_m - centre_m_, noise * noise);
+    Surprise(filter_.Update(h, input.cop_m - centre_m_, noise * noise));
   } else if (input.load_n < kFlightShare * weight_n) {
     filter_.Update(acceleration_, 0, kFlightAcceleration * kFlightAcceleration);
   }
   filter_.Remember(position_, centre_m_);
+}
+
+void HorizontalCom::Surprise(double innovation) {
+  if (landed_s_ < kImpactS) return;
+  const double more = std::min(innovation, kMostSurprise) - surprise_;
+  surprise_ += step_s_ / ((more > 0 ? kSurpriseTimeS : kCalmTimeS) + step_s_) * more;
 }
 
 void HorizontalCom::SeePosture(double c_m) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "daemon/simulation/momentum/linear_filter.h"
@@ -74,13 +75,19 @@ class HorizontalCom {
   const Filter& filter() const { return filter_; }
   const Filter::Matrix& transition() const { return a_; }
   const Filter::Matrix& noise() const { return q_; }
+  /// How far the COPs of the last second were from where the filter expected them: mean square over
+  /// the variance, 1 where the filter is right about the body.
+  double surprise() const { return surprise_; }
   double centre_m() const { return centre_m_; }
   const Filter::Row& position_row() const { return position_; }
 
  private:
+  void Surprise(double innovation);
+
   HorizontalPrior prior_;
   PostureError posture_;
   double mass_kg_;
+  double step_s_;
   Filter filter_;
   Filter::Matrix a_;
   Filter::Matrix q_;
@@ -89,6 +96,8 @@ class HorizontalCom {
   Filter::Row velocity_;
   Filter::Row acceleration_;
   double centre_m_ = 0;
+  double surprise_ = 0;
+  double landed_s_ = std::numeric_limits<double>::infinity();  ///< Since Land.
 };
 
 /// Offline: the whole recording at once, by the Rauch-Tung-Striebel recursion. Allocates.

@@ -134,7 +134,7 @@ void BestEstimate::SeePosture(Measurement& now) {
     learned_->Solve(targets_, likely_.Predict(origin_m_));
     now.posture_com_W_m = origin_m_ + body::CentreOfMass(model_->body, learned_->at());
   }
-  now.momentum = estimator_->SeePosture(origin_m_.y() + plain_m.y(), now.posture_com_W_m->z());
+  now.momentum = estimator_->SeePosture(origin_m_.y() + plain_m.y(), *now.posture_com_W_m);
 }
 
 void BestEstimate::AddExtraTargets(const Measurement& now) {

@@ -24,7 +24,7 @@ struct BestConstants {
   double regressed_prior_weight = 0.6;  ///< The same about the regression's pose.
   double regressed_smooth_weight = 1;
   /// Factor on the deviations of the linearised terms, whose errors persist for many frames.
-  double spread = 1.5;
+  double spread = 1.4;
   double arm_joint_spread = 1.15;  ///< The same from the shoulders down: hands are measured.
   double com_spread = 1.75;        ///< The same for the height of the COM.
   /// What the covariance of all frames leaves out of the knee and what is below it while the foot

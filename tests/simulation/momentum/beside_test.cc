@@ -71,7 +71,7 @@ TEST(BestEstimator, DoesNotTrustLoadsWhileAFootStandsBesideItsBoard) {
       ContactLoads loads = body.At(0);
       if (left_on_floor) loads.feet[0] = Board({0, 0, 0, 0});
       best.Advance(loads);
-      best.SeePosture(0, kMadeHeightM);
+      best.SeePosture(0, {0, 0, kMadeHeightM});
     }
   };
   stand(2, false);

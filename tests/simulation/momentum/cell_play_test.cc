@@ -97,7 +97,7 @@ double HeightError(double half_width_n) {
     const double t = i * kMadeStepS, height_m = body.com_m(t).z();
     best.Advance(read(t));
     const double posture_m = kMadeHeightM + 0.2 * (height_m - kMadeHeightM);
-    square_m2 += std::pow(best.SeePosture(0, posture_m).p_WC_m.z() - height_m, 2);
+    square_m2 += std::pow(best.SeePosture(0, {0, 0, posture_m}).p_WC_m.z() - height_m, 2);
   }
   return std::sqrt(square_m2 / kFrames);
 }

@@ -84,13 +84,14 @@ TEST(BestEstimator, PassesOverAPostureThatIsNotOne) {
   BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
   const Eigen::Vector3d before_m = best.Advance(body.At(0)).p_WC_m;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(best.SeePosture(nan, 1).p_WC_m, before_m);
-  EXPECT_EQ(best.SeePosture(0, nan).p_WC_m, before_m);
-  EXPECT_NE(best.SeePosture(0.1, 1.1).p_WC_m, before_m);
+  EXPECT_EQ(best.SeePosture(nan, {0, 0, 1}).p_WC_m, before_m);
+  EXPECT_EQ(best.SeePosture(0, {nan, 0, 1}).p_WC_m, before_m);
+  EXPECT_EQ(best.SeePosture(0, {0, 0, nan}).p_WC_m, before_m);
+  EXPECT_NE(best.SeePosture(0.1, {0, 0.1, 1.1}).p_WC_m, before_m);
   ContactLoads lost = body.At(kMadeStepS);
   lost.feet[0].valid = false;
   const Eigen::Vector3d coasted_m = best.Advance(lost).p_WC_m;
-  EXPECT_EQ(best.SeePosture(0.1, 1.1).p_WC_m, coasted_m);
+  EXPECT_EQ(best.SeePosture(0.1, {0, 0.1, 1.1}).p_WC_m, coasted_m);
 }
 
 TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {

@@ -30,7 +30,7 @@ double WorstOfALanding(double seen) {
     const double t = i * kMadeStepS;
     best.Advance(body.At(t));
     const double posture_m = kMadeHeightM + seen * (height_m(t) - kMadeHeightM);
-    const Estimate& now = best.SeePosture(0, posture_m);
+    const Estimate& now = best.SeePosture(0, {0, 0, posture_m});
     if (t < kLandS + 0.1) continue;
     const double off_m = std::abs(now.p_WC_m.z() - height_m(t));
     worst = std::max(worst, off_m / std::sqrt(now.position_variance_m2.z()));

@@ -38,7 +38,7 @@ AfterChange SquatAfterChange(double share) {
     }
     best.Advance(loads);
     const double posture_m = kMadeHeightM + 0.1 * (height_m - kMadeHeightM);
-    const double error_m = best.SeePosture(0, posture_m).p_WC_m.z() - height_m;
+    const double error_m = best.SeePosture(0, {0, 0, posture_m}).p_WC_m.z() - height_m;
     if (t < kStandS) {
       after.mass_kg = best.mass_kg();
       continue;

@@ -101,7 +101,7 @@ TEST(BestEstimator, APostureTellsWhatLoadsCannot) {
       const double t = i * kMadeStepS;
       Eigen::Vector3d told_m = best.Advance(body.At(t)).p_WC_m;
       const Eigen::Vector3d seen_m = posture.Of(com_m(t));
-      if (seen == 1) told_m = best.SeePosture(seen_m.y(), seen_m.z()).p_WC_m;
+      if (seen == 1) told_m = best.SeePosture(seen_m.y(), seen_m).p_WC_m;
       rms[seen] += (told_m - com_m(t)).cwiseAbs2() / 3600;
     }
     rms[seen] = rms[seen].cwiseSqrt();
@@ -132,7 +132,7 @@ HeightErrors ErrorsAfterChange(double share, double change_s, double from_s) {
     }
     best.Advance(loads);
     const Eigen::Vector3d seen_m = posture.Of(body.com_m(t));
-    const Estimate& now = best.SeePosture(seen_m.y(), seen_m.z());
+    const Estimate& now = best.SeePosture(seen_m.y(), seen_m);
     if (t < from_s) continue;
     const double error = now.p_WC_m.z() - body.com_m(t).z();
     ++count;
@@ -169,7 +169,7 @@ double GreatestHeightError(double (*height_m)(double)) {
     const double t = i * kMadeStepS, now_m = height_m(t);
     best.Advance(body.At(t));
     const double told_m =
-        best.SeePosture(0, kMadeHeightM + std::max(now_m, 0.5 * now_m)).p_WC_m.z();
+        best.SeePosture(0, {0, 0, kMadeHeightM + std::max(now_m, 0.5 * now_m)}).p_WC_m.z();
     greatest_m = std::max(greatest_m, std::abs(told_m - kMadeHeightM - now_m));
   }
   return greatest_m;
@@ -215,7 +215,7 @@ TEST(BestEstimator, ComesBackWithinASecondOfALandingThatItDidNotSeeComing) {
       }
     }
     best.Advance(loads);
-    const Estimate& now = best.SeePosture(0, height_m(t) + 0.04);
+    const Estimate& now = best.SeePosture(0, {0, 0, height_m(t) + 0.04});
     if (t > 1.2 && t < 2.9) {
       EXPECT_FALSE(now.valid);
     }
@@ -251,7 +251,7 @@ TEST(BestEstimator, LandsAfterAShortFlightThatBeganElsewhere) {
   for (int i = 0; i < 3 * 60; ++i) {
     const double t = i * kMadeStepS;
     best.Advance(body.At(t));
-    const Estimate& now = best.SeePosture(0, 0.5 * (kMadeHeightM + height_m(t)));
+    const Estimate& now = best.SeePosture(0, {0, 0, 0.5 * (kMadeHeightM + height_m(t))});
     if (t < kLandS + 1) continue;
     EXPECT_TRUE(now.trusted) << t;
     EXPECT_TRUE(now.valid) << t;
@@ -289,7 +289,7 @@ TEST(BestEstimator, AJumpOnTheSpotIsNoLandingElsewhere) {
   for (int i = 0; i < 3 * 60; ++i) {
     const double t = i * kMadeStepS;
     best.Advance(body.At(t));
-    best.SeePosture(0, kMadeHeightM + std::max(0.5 * height_m(t), height_m(t)));
+    best.SeePosture(0, {0, 0, kMadeHeightM + std::max(0.5 * height_m(t), height_m(t))});
     EXPECT_NEAR(best.estimate().p_WC_m.z(), kMadeHeightM + height_m(t), 0.1) << t;
   }
   EXPECT_EQ(best.estimate().resets, 0u);
