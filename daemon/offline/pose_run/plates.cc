@@ -181,12 +181,12 @@ void AddWarnings(double mass_kg, PlateReport& report) {
   if (report.supported_share < 1) {
     report.warnings.push_back("the plates carry the body in " +
                               text::Fixed(100 * report.supported_share, 0) +
-                              " % of the trial only (a chair, a box, the floor beside them?): " +
-                              Seconds(report.begin_s, report.end_s) + " is performed");
+                              " % of the trial only (a chair, a box, the floor beside them?); " +
+                              Seconds(report.begin_s, report.end_s) + " is evaluated");
   }
   if (report.begin_mps > kMovingMps) {
     report.warnings.push_back("it begins with the body at " + text::Fixed(report.begin_mps, 1) +
-                              " m/s, which the boards have not seen come");
+                              " m/s; the boards did not measure what came before");
   }
   if (std::abs(report.mass_kg / mass_kg - 1) > kMassOff) {
     report.warnings.push_back("the plates carry " + text::Fixed(report.mass_kg, 1) +

@@ -105,7 +105,7 @@ int Run(const PoseOptions& options, const Shared& shared) {
 void AddPoseCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<PoseOptions>();
   CLI::App* command = app.add_subcommand(
-      "pose", "Pose model: the pose basis and a network from boards and hands to a pose");
+      "pose", "Pose model: the pose basis and a regression from boards and hands to a pose");
   AddMotionOptions(*command, options->motions);
   AddOwnOptions(*command, options->own);
   AddModelOptions(*command, options->model);
