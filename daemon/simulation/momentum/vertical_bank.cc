@@ -18,6 +18,9 @@ constexpr double kPlayAbove = 4;
 // And there must be some, by so many of its deviations.
 constexpr double kPlaySpreads = 1.5;
 constexpr double kAdoptEveryS = 5;
+// Evidence of the ways from rest to rest: above which, and most of which, counts. One way never has
+// as much: it may lead back by chance.
+constexpr double kReturnsAbove = 4, kMostReturns = 8;
 // Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
 // weight must be known to be given to the others.
 constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.001;
@@ -103,6 +106,15 @@ VerticalConfig LooseVertical(double arms_hang_m, double cell_noise_n) {
   return config;
 }
 
+VerticalConfig ReturningVertical(double arms_hang_m, double cell_noise_n, double mass_kg) {
+  VerticalConfig config = TrustingVertical(arms_hang_m, cell_noise_n);
+  config.by_rests = true;
+  config.weight_spread = 0.005;  // Ways from rest to rest show the weight.
+  config.mass_error_kg = config.weight_spread * mass_kg;
+  config.weight_walk = 0.0002;
+  return config;
+}
+
 VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n,
                            const PostureError& posture)
     : trusting_(WithPosture(TrustingVertical(arms_hang_m, cell_noise_n), posture), mass_kg, step_s),
@@ -112,6 +124,8 @@ VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, do
       wary_(WithPosture(WaryVertical(arms_hang_m, cell_noise_n, mass_kg), posture), mass_kg,
             step_s),
       loose_(WithPosture(LooseVertical(arms_hang_m, cell_noise_n), posture), mass_kg, step_s),
+      returning_(WithPosture(ReturningVertical(arms_hang_m, cell_noise_n, mass_kg), posture),
+                 mass_kg, step_s),
       play_(std::max(cell_noise_n, kLeastCellNoiseN)),
       step_s_(step_s),
       posture_(posture) {}
@@ -122,6 +136,8 @@ void VerticalBank::KeepLag(int lag_steps) {
 
 void VerticalBank::Start(const VerticalInput& mean) {
   for (VerticalCom* filter : All()) filter->Start(mean);
+  returns_ = 0;
+  returning_speaks_ = false;
   loose_speaks_ = false;
   wary_speaks_ = false;
   since_posture_s_ = kPostureS;
@@ -133,6 +149,18 @@ void VerticalBank::Start(const VerticalInput& mean) {
 void VerticalBank::SeePosture(double height_m) {
   for (VerticalCom* filter : All()) filter->SeePosture(height_m);
   since_posture_s_ = 0;
+  WatchReturns();
+}
+
+void VerticalBank::WatchReturns() {
+  const std::optional<Return> found = returning_.TakeReturn();
+  if (returning_.strayed() || (found && !found->back)) {
+    returning_.RestartFrom(Others());
+    returns_ = 0;
+  } else if (found) {
+    returns_ = found->by_loads ? std::clamp(returns_ + found->evidence, 0.0, kMostReturns) : 0;
+  }
+  returning_speaks_ = returns_ > kReturnsAbove && returning_.follows_loads();
 }
 
 bool VerticalBank::SeesPosture() const {
@@ -144,6 +172,8 @@ void VerticalBank::Land() {
   for (VerticalCom* filter : All()) {
     filter->Land(kAnyHeightM, kAnyHeightSpreadM, kLandingMps, kLandingSpreadMps);
   }
+  returns_ = 0;
+  returning_speaks_ = false;
 }
 
 bool VerticalBank::CanLand() const {
@@ -206,6 +236,7 @@ void VerticalBank::Advance(const VerticalInput& input) {
   with_play.play = play_.Advance(input.load_n, step_s_);
   for (VerticalCom* filter : All()) filter->Advance(with_play);
   since_posture_s_ += step_s_;
+  returning_speaks_ = returning_speaks_ && SeesPosture();
   Recover();
   Weigh();
   adopted_s_ += step_s_;
@@ -228,6 +259,9 @@ void VerticalBank::Weigh() {
     unweighed_.Reweigh();
     doubtful_.Adopt(unweighed_);
     trusting_.Adopt(unweighed_);
+    returning_.RestartFrom(unweighed_);
+    returns_ = 0;
+    returning_speaks_ = false;
     return;
   }
   const double off = std::abs(free.mean - held.mean);

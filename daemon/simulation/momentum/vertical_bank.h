@@ -23,6 +23,9 @@ VerticalConfig WaryVertical(double arms_hang_m, double cell_noise_n, double mass
 /// For cells that follow their loads with play, of a width that is not known.
 VerticalConfig LooseVertical(double arms_hang_m, double cell_noise_n);
 
+/// For one that integrates the loads from rest to rest.
+VerticalConfig ReturningVertical(double arms_hang_m, double cell_noise_n, double mass_kg);
+
 /// Filters of the height side by side, one that trusts the cells and one that doubts them. The
 /// one that foresaw the last minute's events better speaks; a trusting filter that lost its way is
 /// set right by the doubtful one. A third one takes nothing for granted of the weight: when it is
@@ -30,7 +33,8 @@ VerticalConfig LooseVertical(double arms_hang_m, double cell_noise_n);
 /// others. A fourth one knows nothing for good: where the others stray or foresee much less than it
 /// does, it speaks, and they adopt its state. A fifth one takes the cells to have play: where it
 /// foresees more than all others, it speaks, and those that foresee much less adopt its state. A
-/// plain value.
+/// sixth one uses no posture from one rest to the next: it speaks once its ways have led back to
+/// what postures show at rest, until one does not. A plain value.
 class VerticalBank {
  public:
   VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n,
@@ -51,21 +55,22 @@ class VerticalBank {
   /// False while what speaks contradicts the posture, or is not sure of the height.
   bool trusted() const;
 
-  const VerticalCom& chosen() const { return loose_speaks_ ? loose_ : Tight(); }
+  const VerticalCom& chosen() const { return returning_speaks_ ? returning_ : Others(); }
   bool trusts() const { return trusts_; }
   /// The T-pose's, or what it was found to be.
   double mass_kg() const {
-    return loose_speaks_  ? loose_.mass_kg()
-           : wary_speaks_ ? wary_.weighed_kg()
-           : weighing_    ? unweighed_.weighed_kg()
-                          : chosen().mass_kg();
+    return returning_speaks_ ? returning_.mass_kg()
+           : loose_speaks_   ? loose_.mass_kg()
+           : wary_speaks_    ? wary_.weighed_kg()
+           : weighing_       ? unweighed_.weighed_kg()
+                             : chosen().mass_kg();
   }
   /// Mean and variance, with what the anchor itself may be wrong by in it.
   VerticalCom::Filter::Scalar Height(int lag_steps) const;
 
  private:
-  std::array<VerticalCom*, 5> All() {
-    return {&trusting_, &doubtful_, &unweighed_, &wary_, &loose_};
+  std::array<VerticalCom*, 6> All() {
+    return {&trusting_, &doubtful_, &unweighed_, &wary_, &loose_, &returning_};
   }
   void Weigh();
   /// The wary filter restarts where it has strayed; others that have, or that foresaw much less
@@ -79,6 +84,10 @@ class VerticalBank {
   }
   /// Whether cells have play, by how well the loose filter foresees; `look`: states are adopted.
   void WatchPlay(bool seen, bool look);
+  /// Whether the loads led back from rest to rest, after a posture was seen.
+  void WatchReturns();
+  /// What would speak if no way from rest to rest were known.
+  const VerticalCom& Others() const { return loose_speaks_ ? loose_ : Tight(); }
   bool SeesPosture() const;
 
   VerticalCom trusting_;
@@ -86,7 +95,10 @@ class VerticalBank {
   VerticalCom unweighed_;
   VerticalCom wary_;
   VerticalCom loose_;
+  VerticalCom returning_;
   CellPlay play_;
+  double returns_ = 0;  ///< Evidence of its ways from rest to rest.
+  bool returning_speaks_ = false;
   bool loose_speaks_ = false;
   bool wary_speaks_ = false;
   bool trusts_ = false;

@@ -76,9 +76,12 @@ VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double st
   q_(2, 2) = slow * slow * (1 - keep * keep);
   q_.block<kGroups, kGroups>(kGains, kGains)
       .setConstant(config.weight_walk * config.weight_walk * step_s);
-  const double posture_keep = std::exp(-step_s / config.posture.time_s);
-  a_(kPosture, kPosture) = posture_keep;
-  q_(kPosture, kPosture) = std::pow(config.posture.spread_m, 2) * (1 - posture_keep * posture_keep);
+  if (!config.by_rests) {
+    const double keep_posture = std::exp(-step_s / config.posture.time_s);
+    a_(kPosture, kPosture) = keep_posture;
+    q_(kPosture, kPosture) =
+        std::pow(config.posture.spread_m, 2) * (1 - keep_posture * keep_posture);
+  }
   u_.setZero();
 }
 
@@ -95,8 +98,8 @@ void VerticalCom::Start(const VerticalInput& mean) {
       .setConstant(config_.weight_spread * config_.weight_spread);
   p(kPlay, kPlay) = config_.play_n * config_.play_n;
   for (int i = kGains; i < kPlay; ++i) p(i, i) += config_.gain_spread * config_.gain_spread;
-  p(kPosture, kPosture) = config_.posture.spread_m * config_.posture.spread_m;
-  filter_.Start(VerticalFilter::Vector::Zero(), p);
+  p(kPosture, kPosture) = PostureSpread() * PostureSpread();
+  filter_.Start(PostureMean() * VerticalFilter::Vector::Unit(kPosture), p);
   // In the T-pose all gains together give the weight, but for what the mass is wrong by.
   VerticalFilter::Row h = VerticalFilter::Row::Zero();
   for (int i = 0; i < kGroups; ++i) h(3 + i) = mean.load_n[static_cast<std::size_t>(i)] / mass_kg_;
@@ -107,6 +110,7 @@ void VerticalCom::Start(const VerticalInput& mean) {
   filter_.Remember(VerticalFilter::Row::Unit(0));
   last_.started = false;
   posture_ = {};
+  rest_ = {};
 }
 
 void VerticalCom::Advance(const VerticalInput& input) {
@@ -150,7 +154,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
           std::abs(left_mps2) > limit_mps2) {
         DoubtGains(input, mass_kg_, level_mps2_, left_mps2, limit_mps2, filter_);
       }
-      LookAtVelocity();
+      if (!config_.by_rests || posture_.anchors_s <= 0) LookAtVelocity();
     }
   }
   score_ *= std::exp(-h / kScoreTimeS);
@@ -228,13 +232,15 @@ void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_mp
   p.block<kGroups, kGroups>(kGains, kGains).array() += kReseedGain * kReseedGain;
   x(0) = height_m;
   x(1) = velocity_mps;
-  x(2) = x(kPosture) = 0;
+  x(2) = 0;
+  x(kPosture) = PostureMean();
   p(0, 0) = height_sd_m * height_sd_m;
   p(1, 1) = velocity_sd_mps * velocity_sd_mps;
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
-  p(kPosture, kPosture) = config_.posture.spread_m * config_.posture.spread_m;
+  p(kPosture, kPosture) = PostureSpread() * PostureSpread();
   filter_.Start(x, p);
   posture_ = {};
+  LeaveRests();
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }
 
@@ -289,6 +295,7 @@ void VerticalCom::Coast() {
   u_.setZero();
   filter_.Predict(a, u_, q);
   last_.started = false;
+  LeaveRests();
   still_s_ = 0;
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "daemon/simulation/momentum/linear_filter.h"
@@ -36,6 +38,9 @@ struct VerticalConfig {
   double low_spread_m = 0.15;
   double highest_m = 0.12;  ///< Over the T-pose, with load on the feet: tiptoe, arms up.
   PostureError posture;     ///< Of what hands and feet alone say.
+  /// Postures count only where the body rests, with an error that stays the same; for a few seconds
+  /// from one rest to the next the loads alone are integrated.
+  bool by_rests = false;
 };
 
 /// One frame: the load of each group of cells, and where the COP is.
@@ -45,6 +50,13 @@ struct VerticalInput {
   double play = 0;  ///< CellPlay::Advance; 0 where it does not count.
   bool cop_valid = false;
   Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
+};
+
+/// What a filter of which postures count only at rest finds when the body rests again.
+struct Return {
+  bool back = false;  ///< As high and as slow as the posture shows, within what both may be off.
+  bool by_loads = false;  ///< Nothing but the loads led there from the last rest.
+  double evidence = 0;    ///< Log density of that, less its log density if the cells were wrong.
 };
 
 /// Height of the centre of mass over its height in the T-pose, by a Kalman filter of the loads.
@@ -59,6 +71,8 @@ class VerticalCom {
   static constexpr int kStates = 5 + VerticalInput::kGroups;
   static constexpr int kSlots = 25;
   static constexpr double kStillAfterS = 0.2;
+  /// By which raised heels lift a body that a posture has upright.
+  static constexpr double kTiptoeM = 0.08;
   using Filter = LinearFilter<kStates, kSlots>;
 
   VerticalCom(const VerticalConfig& config, double mass_kg, double step_s);
@@ -75,6 +89,13 @@ class VerticalCom {
   bool strayed() const { return posture_.strayed; }
   /// The last posture was further off than both can be wrong by, by three deviations.
   bool contradicted() const { return posture_.contradicted; }
+  /// With config.by_rests: what came of the way to the rest that was found in the last frame with a
+  /// posture, or a way on which the body is certainly too high. Once.
+  std::optional<Return> TakeReturn();
+  /// With config.by_rests: the body rests, or did so few enough seconds ago.
+  bool follows_loads() const { return rest_.away_s <= kAwayS; }
+  /// Adopt of a filter with config.by_rests: the posture's error is not known, the weight doubted.
+  void RestartFrom(const VerticalCom& other);
   /// Restarts at that height, with what was learned of the cells doubted.
   void Reseed(double height_m, double height_sd_m, double velocity_mps, double velocity_sd_mps);
   /// The same of a body whose feet have just come down: how far its knees give way is not shown by
@@ -116,6 +137,19 @@ class VerticalCom {
   void LookAtVelocity();
   void Anchor();
   void AnchorToPosture(double height_m);
+  /// What a posture shows where it counts only at rest.
+  void SeeRest(double height_m);
+  void ComeToRest(double height_m);
+  /// Where the last rest was no longer says anything.
+  void LeaveRests();
+  /// Of the height that a posture shows and of a velocity of zero, with what cells that are wrong
+  /// may add to both (m, m/s).
+  struct Fit {
+    double distance2 = 0, log_density = 0;
+  };
+  Fit FitOfRest(double height_m, double wrong) const;
+  double PostureMean() const;
+  double PostureSpread() const;
   /// Where the body is by a posture that has it that high.
   std::array<Component, 2> ByPosture(double height_m) const;
   /// The speed at which the posture rises, and from time to time a look at it.
@@ -160,6 +194,16 @@ class VerticalCom {
     bool contradicted = false;
   } posture_;
   double score_ = 0;
+  static constexpr double kAwayS = 4;
+  struct {
+    bool rests = false;
+    double away_s = 0;                ///< Since the last rest, 0 in it and in the T-pose.
+    double calm_s = 0, slow_s = 0;    ///< For how long loads, and the posture, hardly move.
+    double left_m = 0, lowest_m = 0;  ///< Heights when it left the last rest, and since.
+    double posture_m = std::numeric_limits<double>::infinity();  ///< At the last rest.
+    double since_look_s = 0;
+    std::optional<Return> found;
+  } rest_;
 };
 
 /// Offline: forward, then Rauch-Tung-Striebel backwards. Allocates.

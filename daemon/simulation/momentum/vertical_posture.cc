@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kPostureLookS = 0.3;
 constexpr double kPostureAnchorLookS = 0.5, kPostureAnchorsS = 0.1;
-constexpr double kTiptoeM = 0.08;  // By which raised heels lift a body that a posture has upright.
 // A filter has strayed that is for a while so many deviations from the posture.
 constexpr double kFarSpreads = 4, kFarS = 0.2, kDoubtSpreads = 3;
 // How fast a posture rises, smoothed, says how fast the body does: in kSpeedRight of looks right to
@@ -68,6 +67,7 @@ void VerticalCom::FollowSpeed(double height_m) {
   posture_.level_m += share * (height_m - posture_.level_m);
   posture_.gained_mps = (1 - share) * (posture_.gained_mps + step_s_ * acceleration_mps2_);
   posture_.since_speed_s += step_s_;
+  if (config_.by_rests && follows_loads()) return;
   if (posture_.since_speed_s < kSpeedLookS || !Loaded(last_.raw_mps2)) return;
   posture_.since_speed_s = 0;
   LookAtPostureSpeed();
@@ -98,10 +98,12 @@ std::array<Component, 2> VerticalCom::ByPosture(double height_m) const {
 void VerticalCom::AnchorToPosture(double height_m) {
   const PostureError& posture = config_.posture;
   FollowSpeed(height_m);
+  if (config_.by_rests) SeeRest(height_m);
   const Filter::Row row = Filter::Row::Unit(0);
   const Filter::Scalar now = filter_.Of(row);
   Compare(height_m - now.mean, now.variance + posture.spread_m * posture.spread_m, step_s_,
           posture_);
+  if (config_.by_rests && follows_loads()) return;
   // What is less certain than a posture at its worst is not waited for; but looks at a landing
   // that follow each other are all wrong by the same.
   const bool lands = posture_.landing_s > 0;
