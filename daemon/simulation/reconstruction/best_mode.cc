@@ -37,6 +37,7 @@ void BestMode::Start(const momentum::TPose& pose) {
   measured_.Clear();
   truth_.Clear();
   solver_.Start(pose.mass_kg);
+  rise_.Start();
   hold_.Start();
   report_.Start();
 }
@@ -86,7 +87,11 @@ void BestMode::SetTargets(const Measurement& then, const Truth& truth, const Out
     AddFeetTargets(*state_.model, *truth.feet, state_.targets);
     ShowFeet(*state_.model, state_.targets, state_.shown_feet);
   } else {
-    AddFeetTargets(*state_.model, then, state_.options.best.foot, state_.targets);
+    // Beside a skeleton's joints, whose pose is about the mean of all, the usual heights serve
+    // better.
+    const FootSpread& usual = state_.options.best.foot;
+    const FootSpread risen = rise_.Advance(then.hands, usual);
+    AddFeetTargets(*state_.model, then, then.skeleton() ? usual : risen, state_.targets);
     hold_.ShowFeet(*state_.model, state_.targets, then.momentum, output, state_.options.step_s(),
                    state_.shown_feet);
   }

@@ -7,6 +7,7 @@
 #include "daemon/simulation/reconstruction/measurement.h"
 #include "daemon/simulation/reconstruction/mode_state.h"
 #include "daemon/simulation/reconstruction/skeleton.h"
+#include "daemon/simulation/reconstruction/standing_rise.h"
 
 namespace footing::reconstruction {
 
@@ -41,6 +42,7 @@ class BestMode {
   Lag<Measurement> measured_;
   Lag<Truth> truth_;
   BestSolver solver_;
+  StandingRise rise_;
   FootHold hold_;
   SolutionReport report_;
 };

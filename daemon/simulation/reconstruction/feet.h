@@ -40,11 +40,13 @@ struct FootSpread {
   double ankle_up = 0.024;
   double toe_up = 0.02;
   double ahead = -0.015;                        ///< Of F, feet of people who move.
-  double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat.
-  double lift = 0.22;                           ///< In the air, how high the foot is,
-  double forward = 0.05;                        ///< and how far ahead of where it stood,
-  double lift_time_s = 0.12;                    ///< with this time constant;
-  double air_level = 0.20;                      ///< and how far off that it is.
+  double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat;
+  double flat_up = 0.005;     ///< In the T-pose they are: its deviation of both heights,
+  double leave_m = 0.3;       ///< and the hands' way out of it with which they rise (StandingRise).
+  double lift = 0.22;         ///< In the air, how high the foot is,
+  double forward = 0.05;      ///< and how far ahead of where it stood,
+  double lift_time_s = 0.12;  ///< with this time constant;
+  double air_level = 0.20;    ///< and how far off that it is.
   double air_up = 0.17;
 };
 

@@ -13,9 +13,9 @@ struct FootLockConfig {
   double follow_s = 0.05;  ///< with this time constant.
 };
 
-/// Where a foot on the ground is shown. Standing feet do not slide, but their estimated place
+/// Where on the ground a foot is shown. Standing feet do not slide, but their estimated place
 /// wanders while it takes in the centre of pressure: what is shown is held while the estimate stays
-/// near.
+/// near. Heights are those that are estimated.
 /// A plain value.
 class FootLock {
  public:
@@ -31,8 +31,8 @@ class FootLock {
  private:
   FootLockConfig config_;
   bool held_ = false;
-  double since_s_ = 0;  ///< The landing.
-  Eigen::Vector3d place_m_ = Eigen::Vector3d::Zero();
+  double since_s_ = 0;                                               ///< The landing.
+  Eigen::Vector2d place_m_ = Eigen::Vector2d::Zero();                ///< Of the ankle.
   Places from_m_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< Beside the place.
 };
 

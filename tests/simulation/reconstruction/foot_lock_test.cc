@@ -56,6 +56,15 @@ TEST(FootLock, LandsWithoutAJumpAndIsThereWhenItHasEased) {
   EXPECT_LT(Apart(shown, Foot(0.06)), 1e-9);
 }
 
+TEST(FootLock, TheHeightOfItsEstimateIsNotHeld) {
+  FootLock lock;
+  FootLock::Places shown = Foot(0);
+  for (int i = 0; i < 60; ++i) shown = lock.Advance(true, Foot(0), shown, kStepS);
+  FootLock::Places raised = Foot(0);
+  raised[0].z() += 0.015;  // Less than band_m.
+  EXPECT_LT(Apart(lock.Advance(true, raised, shown, kStepS), raised), 1e-12);
+}
+
 TEST(FootLock, LetsGoOfAFootInTheAir) {
   FootLock lock;
   FootLock::Places shown = Foot(0);
