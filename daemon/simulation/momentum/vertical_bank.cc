@@ -82,7 +82,7 @@ VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n) {
 
 VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double mass_kg) {
   VerticalConfig config = DoubtfulVertical(arms_hang_m, cell_noise_n);
-  config.weight_spread = 0.02;
+  config.weight.spread = 0.02;
   config.mass_error_kg = mass_kg;  // What the T-pose weighed says nothing.
   config.still_at_any_weight = true;
   return config;
@@ -90,8 +90,8 @@ VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double
 
 VerticalConfig WaryVertical(double arms_hang_m, double cell_noise_n, double mass_kg) {
   VerticalConfig config = UnweighedVertical(arms_hang_m, cell_noise_n, mass_kg);
-  config.weight_spread = 0.05;
-  config.weight_walk = 0.002;
+  config.weight.spread = 0.05;
+  config.weight.walk = 0.002;
   config.slow_force_n = 4;
   config.slow_force_time_s = 2;
   config.gain_spread = 0.01;
@@ -109,9 +109,9 @@ VerticalConfig LooseVertical(double arms_hang_m, double cell_noise_n) {
 VerticalConfig ReturningVertical(double arms_hang_m, double cell_noise_n, double mass_kg) {
   VerticalConfig config = TrustingVertical(arms_hang_m, cell_noise_n);
   config.by_rests = true;
-  config.weight_spread = 0.005;  // Ways from rest to rest show the weight.
-  config.mass_error_kg = config.weight_spread * mass_kg;
-  config.weight_walk = 0.0002;
+  config.weight.spread = 0.005;  // Ways from rest to rest show the weight.
+  config.mass_error_kg = config.weight.spread * mass_kg;
+  config.weight.walk = 0.0002;
   return config;
 }
 

@@ -34,7 +34,6 @@ constexpr double kStillPostureMps = 0.02;
 // arms or under the ground.
 constexpr double kStraySpreads = 4, kHighestM = 0.15, kLowestM = -0.75;
 constexpr double kReseedGain = 0.03;  // Of the weight: what a filter that strayed may have learned.
-constexpr double kLandingS = 0.8;     // Until a body that has landed stands again, or leaps.
 constexpr double kStartHeightM = 0.005;
 constexpr double kStartVelocityMps = 0.005;
 
@@ -75,7 +74,7 @@ VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double st
   q_(1, 1) = white * white * step_s * step_s;
   q_(2, 2) = slow * slow * (1 - keep * keep);
   q_.block<kGroups, kGroups>(kGains, kGains)
-      .setConstant(config.weight_walk * config.weight_walk * step_s);
+      .setConstant(config.weight.walk * config.weight.walk * step_s);
   if (!config.by_rests) {
     const double keep_posture = std::exp(-step_s / config.posture.time_s);
     a_(kPosture, kPosture) = keep_posture;
@@ -95,7 +94,7 @@ void VerticalCom::Start(const VerticalInput& mean) {
   p(1, 1) = kStartVelocityMps * kStartVelocityMps;
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
   p.block<kGroups, kGroups>(kGains, kGains)
-      .setConstant(config_.weight_spread * config_.weight_spread);
+      .setConstant(config_.weight.spread * config_.weight.spread);
   p(kPlay, kPlay) = config_.play_n * config_.play_n;
   for (int i = kGains; i < kPlay; ++i) p(i, i) += config_.gain_spread * config_.gain_spread;
   p(kPosture, kPosture) = PostureSpread() * PostureSpread();
@@ -242,13 +241,6 @@ void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_mp
   posture_ = {};
   LeaveRests();
   filter_.Remember(VerticalFilter::Row::Unit(0));
-}
-
-void VerticalCom::Land(double height_m, double height_sd_m, double velocity_mps,
-                       double velocity_sd_mps) {
-  Reseed(height_m, height_sd_m, velocity_mps, velocity_sd_mps);
-  posture_.landing_s = kLandingS;
-  posture_.since_score_s = kLandingS;  // The first posture counts.
 }
 
 void VerticalCom::Score(double log_density) { score_ += std::max(log_density, kLeastLogDensity); }

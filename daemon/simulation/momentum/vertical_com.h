@@ -21,8 +21,11 @@ struct VerticalConfig {
   double slow_force_time_s = 5;  ///< Its correlation time.
   double play_n = 0;             ///< Of half the width of the cells' play, of all alike.
   double mass_error_kg = 0.05;   ///< Of the calibration.
-  double weight_spread = 0;      ///< Of what all cells are wrong by alike, beside their own gains.
-  double weight_walk = 0;        ///< By which that wanders, per root second.
+  /// Of what all cells are wrong by alike, beside their own gains.
+  struct {
+    double spread = 0;  ///< At first, as a share of the weight.
+    double walk = 0;    ///< By which it wanders, per root second.
+  } weight;
   /// Still is who keeps the acceleration that the loads show, whatever it is; else who has none.
   bool still_at_any_weight = false;
   // Zero-velocity events.

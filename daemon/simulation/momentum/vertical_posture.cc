@@ -17,6 +17,7 @@ constexpr double kFarSpreads = 4, kFarS = 0.2, kDoubtSpreads = 3;
 // kWrongSpeedMps. On people left out 0.9, 0.02, 0.7 and 0.2 fit best; looks that follow each other
 // so closely are not independent, hence more.
 constexpr double kPostureSpeedS = 0.3, kSpeedLookS = 0.25, kSpeedSettlesS = 3 * kPostureSpeedS;
+constexpr double kLandingS = 0.8;  // Until a body that has landed stands again, or leaps.
 // Of landings so many are on straight legs; in the others the knees give way by up to 40 cm, of
 // which a posture shows little.
 constexpr double kStiffLandings = 0.5, kGivesWayM = 0.2, kGivesWaySpreadM = 0.12;
@@ -83,6 +84,13 @@ void VerticalCom::LookAtPostureSpeed() {
       {{{kSpeedRight, seen_mps, right_mps}, {1 - kSpeedRight, seen_mps, kWrongSpeedMps}}});
   Score(product.log_evidence);
   filter_.SetMoments(row, {product.moments.mean, product.moments.variance});
+}
+
+void VerticalCom::Land(double height_m, double height_sd_m, double velocity_mps,
+                       double velocity_sd_mps) {
+  Reseed(height_m, height_sd_m, velocity_mps, velocity_sd_mps);
+  posture_.landing_s = kLandingS;
+  posture_.since_score_s = kLandingS;  // The first posture counts.
 }
 
 std::array<Component, 2> VerticalCom::ByPosture(double height_m) const {
