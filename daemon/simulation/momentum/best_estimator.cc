@@ -207,7 +207,7 @@ const Estimate& BestEstimator::SeePosture(double lateral_W_m, const Eigen::Vecto
 
 HorizontalCom::Filter::Scalar BestEstimator::PlaceOn(std::size_t axis, bool sees_posture) const {
   HorizontalCom::Filter::Scalar place = horizontal_[axis].Position(lag_steps_);
-  const double doubt_m2 = DoubtOf(horizontal_[axis], estimate_.stepped, kSteppedSpreadM[axis]);
+  const double doubt_m2 = DoubtOf(horizontal_[axis], estimate_.stepped ? kSteppedSpreadM[axis] : 0);
   if (doubt_m2 <= 0) return place;
   if (sees_posture) return Weigh(place, doubt_m2, travelling_[axis].Position(lag_steps_));
   place.variance += doubt_m2;

@@ -21,9 +21,9 @@ HorizontalPrior Travelling(HorizontalPrior in_place) {
 
 PostureError TravellingPosture() { return {1, 0.10, 1, 0.01}; }
 
-double DoubtOf(const HorizontalCom& in_place, bool stepped, double stepped_m) {
+double DoubtOf(const HorizontalCom& in_place, double stepped_m) {
   const double beyond = std::max(in_place.surprise() - kUsualSurprise, 0.0);
-  return beyond * kSurpriseM * kSurpriseM + (stepped ? stepped_m * stepped_m : 0);
+  return beyond * kSurpriseM * kSurpriseM + stepped_m * stepped_m;
 }
 
 HorizontalCom::Filter::Scalar Weigh(const HorizontalCom::Filter::Scalar& in_place, double doubt_m2,

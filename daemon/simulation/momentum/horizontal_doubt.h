@@ -13,8 +13,8 @@ HorizontalPrior Travelling(HorizontalPrior in_place);
 PostureError TravellingPosture();
 
 /// Variance (m²) of C beyond what the filter of a body in place reports: by how much the last COPs
-/// surprised it, and where the body has just stepped (`stepped_m`: how far such a body is from it).
-double DoubtOf(const HorizontalCom& in_place, bool stepped, double stepped_m);
+/// surprised it, and how far a body that has just stepped is from it (`stepped_m`, else 0).
+double DoubtOf(const HorizontalCom& in_place, double stepped_m);
 
 /// C by the filter of a body in place, moved towards that of a travelling body as far as the doubt
 /// in the former goes. Without doubt it is the former.

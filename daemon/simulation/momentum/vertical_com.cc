@@ -12,7 +12,7 @@ namespace {
 using VerticalFilter = VerticalCom::Filter;
 
 constexpr int kGroups = VerticalInput::kGroups;
-constexpr int kGains = 3, kPlay = kGains + kGroups, kPosture = kPlay + 1;  // In the state.
+constexpr int kGains = VerticalCom::kGains, kPlay = VerticalCom::kPlay;
 constexpr int kCells = kGroups + 1;          // What is learned of them: gains, and the play.
 constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
 // Of the acceleration that is kept. One that is further off than `kLeap` limits of stillness has

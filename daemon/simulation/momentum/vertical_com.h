@@ -72,6 +72,8 @@ struct Return {
 class VerticalCom {
  public:
   static constexpr int kStates = 5 + VerticalInput::kGroups;
+  /// Where the gains begin in the state, and where play and posture are.
+  static constexpr int kGains = 3, kPlay = kGains + VerticalInput::kGroups, kPosture = kPlay + 1;
   static constexpr int kSlots = 25;
   static constexpr double kStillAfterS = 0.2;
   /// By which raised heels lift a body that a posture has upright.

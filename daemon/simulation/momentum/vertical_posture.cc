@@ -43,7 +43,7 @@ void VerticalCom::SeePosture(double height_m) {
     return;
   }
   Filter::Row h = posture.share * Filter::Row::Unit(0);
-  h(kStates - 1) = 1;
+  h(kPosture) = 1;
   filter_.Update(h, height_m, posture.white_m * posture.white_m);
   const double s = filter_.p()(0, 0) + posture.spread_m * posture.spread_m;
   const double off_m = height_m - posture.share * filter_.x()(0);

@@ -51,13 +51,12 @@ void VerticalCom::RestartFrom(const VerticalCom& other) {
   Adopt(other);
   Filter::Vector x = filter_.x();
   Filter::Matrix p = filter_.p();
-  constexpr int kBias = kStates - 1, kFirstGain = 3;
-  x(kBias) = kStandsM;
-  p.row(kBias).setZero();
-  p.col(kBias).setZero();
-  p(kBias, kBias) = kStandsSpreadM * kStandsSpreadM;
+  x(kPosture) = kStandsM;
+  p.row(kPosture).setZero();
+  p.col(kPosture).setZero();
+  p(kPosture, kPosture) = kStandsSpreadM * kStandsSpreadM;
   p(0, 0) += kRestartM * kRestartM;
-  p.block<VerticalInput::kGroups, VerticalInput::kGroups>(kFirstGain, kFirstGain).array() +=
+  p.block<VerticalInput::kGroups, VerticalInput::kGroups>(kGains, kGains).array() +=
       kRestartGain * kRestartGain;
   filter_.Start(x, p);
   filter_.Remember(Filter::Row::Unit(0));
@@ -66,7 +65,7 @@ void VerticalCom::RestartFrom(const VerticalCom& other) {
 
 VerticalCom::Fit VerticalCom::FitOfRest(double height_m, double wrong) const {
   Filter::Row h = Filter::Row::Unit(0);
-  h(kStates - 1) = 1;
+  h(kPosture) = 1;
   const Filter::Row v = Filter::Row::Unit(1);
   const double off_m = height_m - h * filter_.x(), off_mps = -filter_.x()(1);
   const double a = filter_.Of(h).variance + kStandsWhiteM * kStandsWhiteM + wrong * wrong;
@@ -123,7 +122,7 @@ void VerticalCom::ComeToRest(double height_m) {
   if (rest_.since_look_s < kRestLookS) return;
   rest_.since_look_s = 0;
   Filter::Row h = Filter::Row::Unit(0);
-  h(kStates - 1) = 1;
+  h(kPosture) = 1;
   filter_.Update(Filter::Row::Unit(1), 0, kRestMps * kRestMps);
   filter_.Update(h, height_m, kStandsWhiteM * kStandsWhiteM);
 }
