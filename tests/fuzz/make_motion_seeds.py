@@ -185,6 +185,8 @@ def c3d_files() -> dict[str, bytes]:
         "signed": c3d(plate().replace(b"UNSIGNED", b"SIGNED  "), whole, scale=0.1, **analog),
         "kind_of_plate": c3d(plate(3), (place + forces) * 2, **analog),
         "channels_of_plate": c3d(plate(wires=(1, 2, 3, 4, 5, 60)), (place + forces) * 2, **analog),
+        "huge_numbers": c3d(plate() + floats("CHANNEL", *[3e9] * 6, group=2) + floats("TYPE", 1e30, group=2), (place + forces) * 2, **analog),
+        "huge_trial": c3d(point + group(4, "TRIAL") + floats("ACTUAL_START_FIELD", 1, 0, group=4) + floats("ACTUAL_END_FIELD", 2, 1e30, group=4), place * 2),
         "corners_of_plate": c3d(plate(at=(0,) * 12), (place + forces) * 2, **analog),
         "not_a_number": c3d(plate(), (place + struct.pack("<6f", *[float("nan")] * 6)) * 2, **analog),
         "long_trial": c3d(point + long, place * 2, frames=1),

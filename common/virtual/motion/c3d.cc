@@ -46,8 +46,8 @@ Result<Layout> ToLayout(const C3dReader& reader, const C3dParameters& parameters
   const auto end = parameters.numbers.find("TRIAL:ACTUAL_END_FIELD");
   const auto wide = [](const std::vector<double>& words) {
     const auto word = [&words](std::size_t i) {
-      return i < words.size() ? static_cast<std::uint16_t>(static_cast<std::int64_t>(words[i]))
-                              : 0u;
+      if (i >= words.size()) return std::uint16_t{0};
+      return static_cast<std::uint16_t>(static_cast<int>(std::clamp(words[i], -32768.0, 65535.0)));
     };
     return static_cast<std::size_t>(word(0)) | static_cast<std::size_t>(word(1)) << 16;
   };
@@ -125,7 +125,7 @@ std::vector<C3dPlate> Plates(const C3dParameters& parameters, double unit_m, std
   const std::size_t wires_each = plates.empty() ? 0 : wires.size() / plates.size();
   for (std::size_t i = 0; i < plates.size(); ++i) {
     C3dPlate& plate = plates[i];
-    if (i < types.size()) plate.type = static_cast<int>(types[i]);
+    if (i < types.size()) plate.type = static_cast<int>(std::clamp(types[i], -1.0, 1000.0));
     for (std::size_t k = 0; k < 12 && 12 * i + k < corners.size(); ++k) {
       plate.corners(static_cast<int>(k % 3), static_cast<int>(k / 3)) =
           unit_m * corners[12 * i + k];
@@ -134,8 +134,10 @@ std::vector<C3dPlate> Plates(const C3dParameters& parameters, double unit_m, std
       plate.origin_m(static_cast<int>(k)) = unit_m * origins[3 * i + k];
     }
     for (std::size_t k = 0; k < wires_each; ++k) {
-      const int channel = static_cast<int>(wires[wires_each * i + k]) - 1;
-      if (channel >= 0 && channel < static_cast<int>(channels)) plate.channels.push_back(channel);
+      const double wire = wires[wires_each * i + k];
+      if (wire >= 1 && wire < static_cast<double>(channels) + 1) {
+        plate.channels.push_back(static_cast<int>(wire) - 1);
+      }
     }
   }
   return plates;

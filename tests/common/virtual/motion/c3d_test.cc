@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "common/virtual/motion/c3d_reader.h"
@@ -173,6 +175,41 @@ TEST(C3d, EveryCutOfAFileIsRefused) {
   const Bytes file = Example(Processor::kIntel, true);
   for (std::size_t length = 0; length < file.size(); length += 7) {
     EXPECT_FALSE(ParseC3d(std::span(file).first(length), "cut").ok()) << length;
+  }
+}
+
+/// The example with more parameters, of which later ones replace those of the same name.
+Bytes With(const Bytes& parameters) {
+  Bytes file = Example(Processor::kIntel, true);
+  const std::string last = "CHANNEL";
+  const auto named = std::search(file.begin(), file.end(), last.begin(), last.end());
+  const auto link = static_cast<std::size_t>(named - file.begin()) + last.size();
+  std::copy(parameters.begin(), parameters.end(),
+            file.begin() + static_cast<std::ptrdiff_t>(link + file[link]));
+  return file;
+}
+
+TEST(C3d, AnyNumberInAParameterIsReadOrRefused) {
+  const Writer writer(Processor::kIntel);
+  for (float value : {3.48966e9f, -3.48966e9f, 3.4e38f, -3.4e38f, 0.5f, -0.5f, NAN}) {
+    for (const char* name : {"USED", "TYPE", "CORNERS", "ORIGIN", "CHANNEL"}) {
+      Bytes changed;
+      writer.Floats(3, name, std::vector<float>(12, value), changed);
+      const auto c3d = ParseC3d(With(changed), "changed");
+      ASSERT_TRUE(c3d.ok()) << c3d.error().message;
+      for (const C3dPlate& plate : c3d->plates) {
+        for (int channel : plate.channels) EXPECT_LT(static_cast<unsigned>(channel), 6u) << value;
+      }
+      const bool needed = name == std::string("TYPE") || name == std::string("CHANNEL");
+      const auto forces = ToGroundForces(*c3d, "changed");
+      EXPECT_FALSE(forces.ok() && needed) << name << " " << value;
+    }
+    Bytes span;
+    writer.Group(4, "TRIAL", span);
+    writer.Floats(4, "ACTUAL_START_FIELD", {1, 0}, span);
+    writer.Floats(4, "ACTUAL_END_FIELD", {3, value}, span);
+    const auto c3d = ParseC3d(With(span), "span");
+    EXPECT_EQ(c3d.ok(), !(std::abs(value) >= 1)) << value;
   }
 }
 
