@@ -10,40 +10,44 @@
 namespace footing::transport {
 
 void TurnQueue::Add(Turn turn) {
-  waiting_.push_back(std::move(turn));
-  ServeLater();
+  // In Serve(), too: what a turn adds waits for the rest.
+  if (const auto line = waiting_.lock()) return line->push_back(std::move(turn));
+  auto line = std::make_shared<Line>();
+  line->push_back(std::move(turn));
+  waiting_ = line;
+  ServeLater(std::move(line));
 }
 
-void TurnQueue::ServeLater() {
-  if (std::exchange(posted_, true)) return;
+void TurnQueue::ServeLater(std::shared_ptr<Line> line) {
   const std::int64_t rest_ns = pace_.rests_when_empty ? rested_ns_ - clock::MonotonicNs() : 0;
-  if (rest_ns > 0) return ServeAfter(rest_ns);
-  boost::asio::post(executor_, [self = shared_from_this()] { self->Serve(); });
-}
-
-void TurnQueue::ServeAfter(std::int64_t rest_ns) {
-  rest_.expires_after(std::chrono::nanoseconds(rest_ns));
-  rest_.async_wait([self = shared_from_this()](const boost::system::error_code& error) {
-    if (!error) self->Serve();
+  if (rest_ns > 0) return ServeAfter(rest_ns, std::move(line));
+  boost::asio::post(executor_, [self = shared_from_this(), line = std::move(line)]() mutable {
+    self->Serve(std::move(line));
   });
 }
 
-void TurnQueue::Serve() {
-  // posted_ stays true: what a turn adds waits for the rest, too.
+void TurnQueue::ServeAfter(std::int64_t rest_ns, std::shared_ptr<Line> line) {
+  rest_.expires_after(std::chrono::nanoseconds(rest_ns));
+  rest_.async_wait([self = shared_from_this(),
+                    line = std::move(line)](const boost::system::error_code& error) mutable {
+    if (!error) self->Serve(std::move(line));
+  });
+}
+
+void TurnQueue::Serve(std::shared_ptr<Line> line) {
   const std::int64_t begun_ns = clock::MonotonicNs();
   std::int64_t worked_ns = 0;
-  while (!waiting_.empty() && worked_ns < pace_.slice_ns) {
-    Turn turn = std::move(waiting_.front());
-    waiting_.pop_front();
-    if (turn()) waiting_.push_back(std::move(turn));
+  while (!line->empty() && worked_ns < pace_.slice_ns) {
+    Turn turn = std::move(line->front());
+    line->pop_front();
+    if (turn()) line->push_back(std::move(turn));
     worked_ns = clock::MonotonicNs() - begun_ns;
   }
   const auto rest_ns =
       static_cast<std::int64_t>(static_cast<double>(worked_ns) * (1 - pace_.share) / pace_.share);
   const std::int64_t cut_ns = std::min(rest_ns, pace_.longest_rest_ns);
   rested_ns_ = begun_ns + worked_ns + cut_ns;
-  posted_ = !waiting_.empty();
-  if (posted_) ServeAfter(cut_ns);
+  if (!line->empty()) ServeAfter(cut_ns, std::move(line));
 }
 
 }  // namespace footing::transport

@@ -22,7 +22,8 @@ struct TurnPace {
 /// The work of many connections on one loop, in turns: each gets a small piece done and goes to the
 /// end of the line. The line rests in between, so that a tick that is due waits for at most a
 /// piece, and the rest of the loop's time is the ticks', however many connections have work. Held
-/// by a shared_ptr; runs on the executor's one thread.
+/// by a shared_ptr; runs on the executor's one thread. What waits belongs to the loop: it may hold
+/// this queue, and goes when the loop is destroyed.
 class TurnQueue : public std::enable_shared_from_this<TurnQueue> {
  public:
   /// Does a piece; true when there is more to do.
@@ -34,19 +35,23 @@ class TurnQueue : public std::enable_shared_from_this<TurnQueue> {
   /// `turn` is called from the loop, not from here.
   void Add(Turn turn);
 
-  std::size_t waiting() const { return waiting_.size(); }
+  std::size_t waiting() const {
+    const auto line = waiting_.lock();
+    return line ? line->size() : 0;
+  }
 
  private:
-  void Serve();
-  void ServeLater();
-  void ServeAfter(std::int64_t rest_ns);
+  using Line = std::deque<Turn>;
+
+  void Serve(std::shared_ptr<Line> line);
+  void ServeLater(std::shared_ptr<Line> line);
+  void ServeAfter(std::int64_t rest_ns, std::shared_ptr<Line> line);
 
   boost::asio::any_io_executor executor_;
   const TurnPace pace_;
   timer::Timer rest_;
-  std::int64_t rested_ns_ = 0;  ///< The end of the newest rest.
-  std::deque<Turn> waiting_;
-  bool posted_ = false;
+  std::int64_t rested_ns_ = 0;   ///< The end of the newest rest.
+  std::weak_ptr<Line> waiting_;  ///< Held by what the loop will call next, or is in now.
 };
 
 }  // namespace footing::transport
