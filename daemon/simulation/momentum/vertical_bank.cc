@@ -23,7 +23,7 @@ constexpr double kAdoptEveryS = 5;
 constexpr double kReturnsAbove = 4, kMostReturns = 8;
 // Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
 // weight must be known to be given to the others.
-constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.001;
+constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.006;
 constexpr double kPostureS = 0.1;  // A posture older than this is not used.
 // Where a body is that nothing is known of, and how fast when it lands: between a step down and a
 // fall of 20 cm.
@@ -254,7 +254,7 @@ void VerticalBank::Weigh() {
     // They may have adopted a state that is better by now.
     const VerticalCom& other = trusts_ ? trusting_ : doubtful_;
     if (unweighed_.score() - other.score() < kDoubtBelow) unweighed_.Adopt(other);
-    if (free.variance > kSettledSpread * kSettledSpread) return;
+    if (unweighed_.holds_t_pose() || free.variance > kSettledSpread * kSettledSpread) return;
     weighing_ = false;
     unweighed_.Reweigh();
     doubtful_.Adopt(unweighed_);

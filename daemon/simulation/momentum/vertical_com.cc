@@ -43,22 +43,6 @@ double Total(const VerticalInput& input) {
   return total;
 }
 
-/// All cells are found to be wrong alike: loads that show an acceleration are those of a body that
-/// has none, to within a deviation. What is left of it by the gains learned so far is their doubt.
-void DoubtGains(const VerticalInput& input, double mass_kg, double shown_mps2, double left_mps2,
-                double sd_mps2, VerticalFilter& filter) {
-  VerticalFilter::Matrix q = VerticalFilter::Matrix::Zero();
-  q.block<kGroups, kGroups>(kGains, kGains)
-      .setConstant(std::pow(left_mps2 / kStandardGravityMps2, 2));
-  filter.Predict(VerticalFilter::Matrix::Identity(), VerticalFilter::Vector::Zero(), q);
-  VerticalFilter::Row row = VerticalFilter::Row::Unit(2);
-  for (int i = 0; i < kGroups; ++i) {
-    row(kGains + i) = input.load_n[static_cast<std::size_t>(i)] / mass_kg;
-  }
-  row(kPlay) = -input.play / mass_kg;
-  filter.Update(row, shown_mps2, sd_mps2 * sd_mps2);
-}
-
 }  // namespace
 
 VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double step_s)
@@ -109,6 +93,7 @@ void VerticalCom::Start(const VerticalInput& mean) {
   filter_.Remember(VerticalFilter::Row::Unit(0));
   last_.started = false;
   posture_ = {};
+  t_pose_ = {};
   rest_ = {};
 }
 
@@ -141,17 +126,18 @@ void VerticalCom::Advance(const VerticalInput& input) {
   acceleration_mps2_ += filter_.x()(kPlay) * input.play / mass_kg_;
   filter_.Predict(a_, u_, q_);
   Watch(input, raw);
-  if (still()) {
+  if (config_.still_at_any_weight && holds_t_pose()) {
+    LookAtTPose(input);
+  } else if (still()) {
     since_still_look_s_ += h;
     if (since_still_look_s_ >= kStillLookS) {
       since_still_look_s_ = 0;
       // Nobody stands still at two loads. Where a body that hands and feet show to be still, too,
       // should be accelerating by what its filter has learned, what it weighs has changed since.
-      const double left_mps2 = acceleration_mps2_ + level_mps2_ - raw;
       const double limit_mps2 = config_.still_acceleration_mps2;
-      if (config_.still_at_any_weight && posture_.anchors_s > 0 &&
-          std::abs(left_mps2) > limit_mps2) {
-        DoubtGains(input, mass_kg_, level_mps2_, left_mps2, limit_mps2, filter_);
+      if (config_.still_at_any_weight && posture_.anchors_s > 0 && steady_.since_s >= kStillLookS &&
+          std::abs(LevelLeft(input, level_mps2_).mean) > limit_mps2) {
+        LearnLevel(input, level_mps2_, limit_mps2);
       }
       if (!config_.by_rests || posture_.anchors_s <= 0) LookAtVelocity();
     }
@@ -172,6 +158,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
 void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
   const double share = step_s_ / (kAccelerationTimeS + step_s_);
   const double off_mps2 = raw_mps2 - level_mps2_;
+  WatchLevel(raw_mps2);
   const bool leaps =
       posture_.anchors_s > 0 && std::abs(off_mps2) > kLeap * config_.still_acceleration_mps2;
   level_mps2_ += step_s_ / ((leaps ? kLeapTimeS : kLevelTimeS) + step_s_) * off_mps2;
@@ -239,6 +226,7 @@ void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_mp
   p(kPosture, kPosture) = PostureSpread() * PostureSpread();
   filter_.Start(x, p);
   posture_ = {};
+  t_pose_.held = false;
   LeaveRests();
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }
@@ -288,6 +276,7 @@ void VerticalCom::Coast() {
   filter_.Predict(a, u_, q);
   last_.started = false;
   LeaveRests();
+  steady_.since_s = 0;
   still_s_ = 0;
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }

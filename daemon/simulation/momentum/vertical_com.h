@@ -110,6 +110,8 @@ class VerticalCom {
   Filter::Scalar Height(int lag_steps) const { return filter_.Delayed(lag_steps); }
   Filter::Scalar Velocity() const { return filter_.Of(Filter::Row::Unit(1)); }
   double acceleration_mps2() const { return acceleration_mps2_; }  ///< Corrected, of this frame.
+  /// With config.still_at_any_weight: the body is still in its T-pose, with loads that are steady.
+  bool holds_t_pose() const;
   bool still() const { return still_s_ >= kStillAfterS; }
   /// What the cells measure too much beside the mass, as a part of the weight, with the T-pose's
   /// loads.
@@ -139,6 +141,17 @@ class VerticalCom {
 
  private:
   void Watch(const VerticalInput& input, double raw_mps2);
+  /// For how long the loads are steady, by what they show.
+  void WatchLevel(double raw_mps2);
+  /// Where a posture is the T-pose's no longer, it says nothing more of height and weight.
+  void FollowHold(double height_m);
+  void LookAtTPose(const VerticalInput& input);
+  Filter::Row LevelRow(const VerticalInput& input) const;
+  /// What the loads show of a body that does not accelerate, less what the filter knows of it.
+  Filter::Scalar LevelLeft(const VerticalInput& input, double level_mps2) const;
+  /// The body does not accelerate: what they show is what the cells measure too much, to within a
+  /// deviation. What the filter knew otherwise is its doubt.
+  void LearnLevel(const VerticalInput& input, double level_mps2, double sd_mps2);
   void LookAtVelocity();
   void Anchor();
   void AnchorToPosture(double height_m);
@@ -198,6 +211,15 @@ class VerticalCom {
     bool strayed = false;
     bool contradicted = false;
   } posture_;
+  struct {
+    double near_mps2 = 0, mean_mps2 = 0;  ///< What loads show that hardly change: now, and so far.
+    double since_s = 0;
+  } steady_;
+  struct {
+    bool held = true;                  ///< The posture is still that of the T-pose.
+    double frames = 0, posture_m = 0;  ///< The postures so far, and their mean height.
+    double since_look_s = 0;
+  } t_pose_;
   double score_ = 0;
   static constexpr double kAwayS = 4;
   struct {

@@ -66,6 +66,7 @@ void VerticalCom::FollowSpeed(double height_m) {
   const double share = step_s_ / (kPostureSpeedS + step_s_);
   posture_.speed_mps = (height_m - posture_.level_m) / kPostureSpeedS;
   posture_.level_m += share * (height_m - posture_.level_m);
+  FollowHold(height_m);
   posture_.gained_mps = (1 - share) * (posture_.gained_mps + step_s_ * acceleration_mps2_);
   posture_.since_speed_s += step_s_;
   if (config_.by_rests && follows_loads()) return;

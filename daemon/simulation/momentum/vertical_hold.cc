@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+#include "daemon/simulation/momentum/vertical_com.h"
+
+// What a filter learns of the weight from a body that keeps its T-pose, or stands still.
+namespace footing::momentum {
+namespace {
+
+// Loads are steady that keep, smoothed, within a limit of their mean. A person who stood still on
+// laboratory plates (OpenCap subject 4, static1, 5 s) had a scatter of 0.011 m/s2 about means of
+// 0.3 s, which differed from each other by 0.002.
+constexpr double kNearS = 0.05, kSteadyMps2 = 0.04, kSteadyS = 0.3;
+// What a mean of steady loads is worth.
+constexpr double kLevelSpreadMps2 = 0.01;
+// More of the weight than this is not wrong but elsewhere: a foot stands beside the boards.
+constexpr double kMostWrong = 0.15;
+// Means of the same steady loads are all wrong by the same: one counts where it says so many times
+// more than is known.
+constexpr double kNewLevel = 2;
+// The T-pose is kept by a posture that is off its mean by less, smoothed and in a single frame.
+constexpr double kHeldM = 0.003, kHeldFrameM = 0.01;
+// Time between looks at a body in its T-pose, and what its velocity and height are worth.
+constexpr double kLookS = 0.2, kHoldMps = 0.01, kHoldM = 0.015;
+
+}  // namespace
+
+void VerticalCom::WatchLevel(double raw_mps2) {
+  steady_.since_s += step_s_;
+  steady_.near_mps2 += step_s_ / (kNearS + step_s_) * (raw_mps2 - steady_.near_mps2);
+  if (std::abs(steady_.near_mps2 - steady_.mean_mps2) > kSteadyMps2) {
+    steady_.since_s = 0;
+    steady_.near_mps2 = raw_mps2;
+  }
+  steady_.mean_mps2 += step_s_ / (steady_.since_s + step_s_) * (raw_mps2 - steady_.mean_mps2);
+}
+
+void VerticalCom::FollowHold(double height_m) {
+  if (!t_pose_.held) return;
+  t_pose_.frames += 1;
+  t_pose_.posture_m += (height_m - t_pose_.posture_m) / t_pose_.frames;
+  t_pose_.held = std::abs(posture_.level_m - t_pose_.posture_m) < kHeldM &&
+                 std::abs(height_m - t_pose_.posture_m) < kHeldFrameM;
+}
+
+bool VerticalCom::holds_t_pose() const {
+  return t_pose_.held && posture_.anchors_s > 0 && steady_.since_s >= kSteadyS &&
+         cop_speed_mps_ < config_.still_cop_mps;
+}
+
+void VerticalCom::LookAtTPose(const VerticalInput& input) {
+  t_pose_.since_look_s += step_s_;
+  if (t_pose_.since_look_s < kLookS) return;
+  t_pose_.since_look_s = 0;
+  const Filter::Scalar left = LevelLeft(input, steady_.mean_mps2);
+  if (std::abs(left.mean) > kMostWrong * kStandardGravityMps2) return;
+  if (std::abs(left.mean) > kSteadyMps2 ||
+      left.variance > std::pow(kNewLevel * kLevelSpreadMps2, 2)) {
+    LearnLevel(input, steady_.mean_mps2, kLevelSpreadMps2);
+  }
+  filter_.Update(Filter::Row::Unit(1), 0, kHoldMps * kHoldMps);
+  filter_.Update(Filter::Row::Unit(0), 0, kHoldM * kHoldM);
+}
+
+VerticalCom::Filter::Row VerticalCom::LevelRow(const VerticalInput& input) const {
+  Filter::Row row = Filter::Row::Unit(2);
+  for (int i = 0; i < VerticalInput::kGroups; ++i) {
+    row(kGains + i) = input.load_n[static_cast<std::size_t>(i)] / mass_kg_;
+  }
+  row(kPlay) = -input.play / mass_kg_;
+  return row;
+}
+
+VerticalCom::Filter::Scalar VerticalCom::LevelLeft(const VerticalInput& input,
+                                                   double level_mps2) const {
+  const Filter::Scalar known = filter_.Of(LevelRow(input));
+  return {level_mps2 - known.mean, known.variance};
+}
+
+void VerticalCom::LearnLevel(const VerticalInput& input, double level_mps2, double sd_mps2) {
+  const double left_mps2 = LevelLeft(input, level_mps2).mean;
+  if (std::abs(left_mps2) > std::max(sd_mps2, kSteadyMps2)) {
+    Filter::Matrix q = Filter::Matrix::Zero();
+    q.block<VerticalInput::kGroups, VerticalInput::kGroups>(kGains, kGains)
+        .setConstant(std::pow(left_mps2 / kStandardGravityMps2, 2));
+    filter_.Predict(Filter::Matrix::Identity(), Filter::Vector::Zero(), q);
+  }
+  filter_.Update(LevelRow(input), level_mps2, sd_mps2 * sd_mps2);
+}
+
+}  // namespace footing::momentum
