@@ -22,8 +22,10 @@ constexpr double kAdoptEveryS = 5;
 // as much: it may lead back by chance.
 constexpr double kReturnsAbove = 4, kMostReturns = 8;
 // Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
-// weight must be known to be given to the others.
-constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.006;
+// weight must be known to be given to the others: from a body that kept its T-pose, which they
+// follow better than the unweighed filter does, or from one that moved.
+constexpr double kLeastOverweight = 0.005;
+constexpr double kSettledInTPose = 0.0025, kSettledSpread = 0.001;
 constexpr double kPostureS = 0.1;  // A posture older than this is not used.
 // Where a body is that nothing is known of, and how fast when it lands: between a step down and a
 // fall of 20 cm.
@@ -144,6 +146,7 @@ void VerticalBank::Start(const VerticalInput& mean) {
   trusts_ = false;
   adopted_s_ = 0;
   weighing_ = false;
+  weighed_in_t_pose_ = false;
 }
 
 void VerticalBank::SeePosture(double height_m) {
@@ -254,8 +257,14 @@ void VerticalBank::Weigh() {
     // They may have adopted a state that is better by now.
     const VerticalCom& other = trusts_ ? trusting_ : doubtful_;
     if (unweighed_.score() - other.score() < kDoubtBelow) unweighed_.Adopt(other);
-    if (unweighed_.holds_t_pose() || free.variance > kSettledSpread * kSettledSpread) return;
+    if (unweighed_.holds_t_pose()) {
+      weighed_in_t_pose_ = true;
+      return;
+    }
+    const double settled = weighed_in_t_pose_ ? kSettledInTPose : kSettledSpread;
+    if (free.variance > settled * settled) return;
     weighing_ = false;
+    weighed_in_t_pose_ = false;
     unweighed_.Reweigh();
     doubtful_.Adopt(unweighed_);
     trusting_.Adopt(unweighed_);

@@ -104,6 +104,7 @@ class VerticalBank {
   bool trusts_ = false;
   double adopted_s_ = 0;
   bool weighing_ = false;  ///< The T-pose's weight is known to be wrong, the true one not yet.
+  bool weighed_in_t_pose_ = false;  ///< While weighing: the body kept its T-pose meanwhile.
   double step_s_;
   PostureError posture_;
   double since_posture_s_ = 0;

@@ -146,6 +146,9 @@ class VerticalCom {
   /// Where a posture is the T-pose's no longer, it says nothing more of height and weight.
   void FollowHold(double height_m);
   void LookAtTPose(const VerticalInput& input);
+  /// Steady loads that show so much of an acceleration show a weight: were they not, the body would
+  /// have moved further than its posture.
+  bool IsWeight(double left_mps2) const;
   Filter::Row LevelRow(const VerticalInput& input) const;
   /// What the loads show of a body that does not accelerate, less what the filter knows of it.
   Filter::Scalar LevelLeft(const VerticalInput& input, double level_mps2) const;
@@ -216,8 +219,8 @@ class VerticalCom {
     double since_s = 0;
   } steady_;
   struct {
-    bool held = true;                  ///< The posture is still that of the T-pose.
-    double frames = 0, posture_m = 0;  ///< The postures so far, and their mean height.
+    bool held = true;                           ///< The posture is still that of the T-pose.
+    double frames = 0, mean_m = 0, near_m = 0;  ///< Heights of the postures so far, and now.
     double since_look_s = 0;
   } t_pose_;
   double score_ = 0;

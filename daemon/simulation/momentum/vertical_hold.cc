@@ -11,16 +11,18 @@ namespace {
 // Loads are steady that keep, smoothed, within a limit of their mean. A person who stood still on
 // laboratory plates (OpenCap subject 4, static1, 5 s) had a scatter of 0.011 m/s2 about means of
 // 0.3 s, which differed from each other by 0.002.
-constexpr double kNearS = 0.05, kSteadyMps2 = 0.04, kSteadyS = 0.3;
+constexpr double kNearS = 0.05, kSteadyMps2 = 0.06, kSteadyS = 0.3;
 // What a mean of steady loads is worth.
 constexpr double kLevelSpreadMps2 = 0.01;
 // More of the weight than this is not wrong but elsewhere: a foot stands beside the boards.
 constexpr double kMostWrong = 0.15;
+// A body that the loads accelerate has moved by this while they were steady, more than its posture.
+constexpr double kMovedM = 0.02;
 // Means of the same steady loads are all wrong by the same: one counts where it says so many times
 // more than is known.
 constexpr double kNewLevel = 2;
-// The T-pose is kept by a posture that is off its mean by less, smoothed and in a single frame.
-constexpr double kHeldM = 0.003, kHeldFrameM = 0.01;
+// The T-pose is kept by a posture that, smoothed, is off its mean by less.
+constexpr double kHeldS = 0.1, kHeldM = 0.004;
 // Time between looks at a body in its T-pose, and what its velocity and height are worth.
 constexpr double kLookS = 0.2, kHoldMps = 0.01, kHoldM = 0.015;
 
@@ -38,10 +40,11 @@ void VerticalCom::WatchLevel(double raw_mps2) {
 
 void VerticalCom::FollowHold(double height_m) {
   if (!t_pose_.held) return;
+  if (t_pose_.frames == 0) t_pose_.near_m = height_m;
   t_pose_.frames += 1;
-  t_pose_.posture_m += (height_m - t_pose_.posture_m) / t_pose_.frames;
-  t_pose_.held = std::abs(posture_.level_m - t_pose_.posture_m) < kHeldM &&
-                 std::abs(height_m - t_pose_.posture_m) < kHeldFrameM;
+  t_pose_.mean_m += (height_m - t_pose_.mean_m) / t_pose_.frames;
+  t_pose_.near_m += step_s_ / (kHeldS + step_s_) * (height_m - t_pose_.near_m);
+  t_pose_.held = std::abs(t_pose_.near_m - t_pose_.mean_m) < kHeldM;
 }
 
 bool VerticalCom::holds_t_pose() const {
@@ -49,14 +52,20 @@ bool VerticalCom::holds_t_pose() const {
          cop_speed_mps_ < config_.still_cop_mps;
 }
 
+bool VerticalCom::IsWeight(double left_mps2) const {
+  const double off_mps2 = std::abs(left_mps2);
+  return 0.5 * off_mps2 * steady_.since_s * steady_.since_s > kMovedM &&
+         off_mps2 < kMostWrong * kStandardGravityMps2;
+}
+
 void VerticalCom::LookAtTPose(const VerticalInput& input) {
   t_pose_.since_look_s += step_s_;
   if (t_pose_.since_look_s < kLookS) return;
   t_pose_.since_look_s = 0;
   const Filter::Scalar left = LevelLeft(input, steady_.mean_mps2);
-  if (std::abs(left.mean) > kMostWrong * kStandardGravityMps2) return;
-  if (std::abs(left.mean) > kSteadyMps2 ||
-      left.variance > std::pow(kNewLevel * kLevelSpreadMps2, 2)) {
+  const bool wrong = std::abs(left.mean) > kSteadyMps2;
+  if (wrong && !IsWeight(left.mean)) return;
+  if (wrong || left.variance > std::pow(kNewLevel * kLevelSpreadMps2, 2)) {
     LearnLevel(input, steady_.mean_mps2, kLevelSpreadMps2);
   }
   filter_.Update(Filter::Row::Unit(1), 0, kHoldMps * kHoldMps);

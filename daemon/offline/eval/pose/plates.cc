@@ -1,5 +1,6 @@
 #include "daemon/offline/eval/pose/plates.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/units/units.h"
@@ -10,6 +11,9 @@ namespace footing::eval {
 namespace {
 
 using nlohmann::ordered_json;
+
+// Boards that carry less, for longer than a flight lasts, have nobody on them.
+constexpr double kLoadedN = 20, kMostFlightS = 1;
 
 /// The fields of a trial that measured and simulated forces are compared by.
 constexpr const char* kCompared[] = {"mpjpe_cm",
@@ -61,6 +65,17 @@ Result<ordered_json> ByForce(const pose_run::PlateRun& plates, const reconstruct
   return json;
 }
 
+/// For how long the boards are empty at most, from a frame on.
+double EmptyS(const pose_run::PoseRun& run, std::size_t from) {
+  double longest_s = 0, empty_s = 0;
+  for (std::size_t i = from; i < run.frames.size(); ++i) {
+    const momentum::Pressure pressure = momentum::PressureOf(run.frames[i].inputs.loads, kLoadedN);
+    empty_s = pressure.total_n < kLoadedN ? empty_s + 1 / run.rate_hz : 0;
+    longest_s = std::max(longest_s, empty_s);
+  }
+  return longest_s;
+}
+
 /// The centre of mass by the offline smoothers, from the cells alone.
 Result<ordered_json> Offline(const pose_run::PoseRun& run) {
   MomentumScene scene;
@@ -77,6 +92,11 @@ Result<ordered_json> Offline(const pose_run::PoseRun& run) {
   }
   if (!calibration.complete() || start > run.judged_from) {
     return InvalidData("the T-pose never stood still on both boards: no calibration");
+  }
+  if (EmptyS(run, start) > kMostFlightS) {
+    return ordered_json{
+        {"left_out",
+         "nobody is on the boards for a time, and the smoothers cannot follow the body there"}};
   }
   return OfflineJson(scene, calibration.result(), start, run.judged_from);
 }
