@@ -101,9 +101,9 @@ void VerticalCom::Advance(const VerticalInput& input) {
   const double raw = Total(input) / mass_kg_ - kStandardGravityMps2;
   if (!last_.started) {
     last_ = {true, input, raw};
-    mean_cop_m_ = input.cop_m;
+    cop_.mean_m = input.cop_m;
     level_mps2_ = raw;
-    mean_acceleration_mps2_ = std::abs(raw);
+    still_.mean_mps2 = std::abs(raw);
   }
   // Trapezoid over the step; the errors enter with the loads of the same time.
   const double h = step_s_, mean = 0.5 * (raw + last_.raw_mps2);
@@ -129,9 +129,9 @@ void VerticalCom::Advance(const VerticalInput& input) {
   if (config_.still_at_any_weight && holds_t_pose()) {
     LookAtTPose(input);
   } else if (still()) {
-    since_still_look_s_ += h;
-    if (since_still_look_s_ >= kStillLookS) {
-      since_still_look_s_ = 0;
+    still_.since_look_s += h;
+    if (still_.since_look_s >= kStillLookS) {
+      still_.since_look_s = 0;
       // Nobody stands still at two loads. Where a body that hands and feet show to be still, too,
       // should be accelerating by what its filter has learned, what it weighs has changed since.
       const double limit_mps2 = config_.still_acceleration_mps2;
@@ -164,18 +164,18 @@ void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
       posture_.anchors_s > 0 && std::abs(off_mps2) > kLeap * config_.still_acceleration_mps2;
   level_mps2_ += step_s_ / ((leaps ? kLeapTimeS : kLevelTimeS) + step_s_) * off_mps2;
   const double moved = raw_mps2 - (config_.still_at_any_weight ? level_mps2_ : 0);
-  mean_acceleration_mps2_ += share * (std::abs(moved) - mean_acceleration_mps2_);
+  still_.mean_mps2 += share * (std::abs(moved) - still_.mean_mps2);
   const double cop_share = step_s_ / (kCopTimeS + step_s_);
   const Eigen::Vector2d move = input.cop_valid
-                                   ? Eigen::Vector2d(cop_share * (input.cop_m - mean_cop_m_))
+                                   ? Eigen::Vector2d(cop_share * (input.cop_m - cop_.mean_m))
                                    : Eigen::Vector2d::Zero();
-  mean_cop_m_ += move;
+  cop_.mean_m += move;
   const double speed = input.cop_valid ? move.norm() / step_s_ : config_.still_cop_mps * 2;
-  cop_speed_mps_ += cop_share * (speed - cop_speed_mps_);
-  const bool calm = mean_acceleration_mps2_ < config_.still_acceleration_mps2 &&
-                    cop_speed_mps_ < config_.still_cop_mps &&
+  cop_.speed_mps += cop_share * (speed - cop_.speed_mps);
+  const bool calm = still_.mean_mps2 < config_.still_acceleration_mps2 &&
+                    cop_.speed_mps < config_.still_cop_mps &&
                     !(posture_.anchors_s > 0 && std::abs(posture_.speed_mps) > kStillPostureMps);
-  still_s_ = calm ? still_s_ + step_s_ : 0;
+  still_.for_s = calm ? still_.for_s + step_s_ : 0;
 }
 
 void VerticalCom::LookAtVelocity() {
@@ -278,7 +278,7 @@ void VerticalCom::Coast() {
   last_.started = false;
   LeaveRests();
   steady_.since_s = 0;
-  still_s_ = 0;
+  still_.for_s = 0;
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }
 

@@ -112,7 +112,7 @@ class VerticalCom {
   double acceleration_mps2() const { return acceleration_mps2_; }  ///< Corrected, of this frame.
   /// With config.still_at_any_weight: the body is still in its T-pose, with loads that are steady.
   bool holds_t_pose() const;
-  bool still() const { return still_s_ >= kStillAfterS; }
+  bool still() const { return still_.for_s >= kStillAfterS; }
   /// What the cells measure too much beside the mass, as a part of the weight, with the T-pose's
   /// loads.
   Filter::Scalar Overweight() const { return filter_.Of(overweight_); }
@@ -196,12 +196,15 @@ class VerticalCom {
     double raw_mps2 = 0;
   } last_;
   double acceleration_mps2_ = 0;
-  double level_mps2_ = 0;              // What the loads show, slowly smoothed.
-  double mean_acceleration_mps2_ = 0;  // Smoothed, absolute.
-  Eigen::Vector2d mean_cop_m_ = Eigen::Vector2d::Zero();
-  double cop_speed_mps_ = 0;
-  double still_s_ = 0;
-  double since_still_look_s_ = 0;
+  double level_mps2_ = 0;  // What the loads show, slowly smoothed.
+  struct {
+    Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();  ///< Smoothed, and so its speed.
+    double speed_mps = 0;
+  } cop_;
+  struct {
+    double mean_mps2 = 0;  ///< |acceleration|, smoothed.
+    double for_s = 0, since_look_s = 0;
+  } still_;
   double since_look_s_ = 0;
   struct {
     double since_score_s = 0;

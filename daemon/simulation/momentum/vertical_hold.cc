@@ -49,7 +49,7 @@ void VerticalCom::FollowHold(double height_m) {
 
 bool VerticalCom::holds_t_pose() const {
   return t_pose_.held && posture_.anchors_s > 0 && steady_.since_s >= kSteadyS &&
-         cop_speed_mps_ < config_.still_cop_mps;
+         cop_.speed_mps < config_.still_cop_mps;
 }
 
 bool VerticalCom::IsWeight(double left_mps2) const {

@@ -77,7 +77,7 @@ VerticalCom::Fit VerticalCom::FitOfRest(double height_m, double wrong) const {
 }
 
 void VerticalCom::SeeRest(double height_m) {
-  const bool calm = std::abs(acceleration_mps2_) < kCalmMps2 && cop_speed_mps_ < kCalmCopMps;
+  const bool calm = std::abs(acceleration_mps2_) < kCalmMps2 && cop_.speed_mps < kCalmCopMps;
   rest_.calm_s = calm ? rest_.calm_s + step_s_ : 0;
   rest_.slow_s = std::abs(posture_.speed_mps) < kSlowPostureMps ? rest_.slow_s + step_s_ : 0;
   bool rests = calm;
