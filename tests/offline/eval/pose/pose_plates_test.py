@@ -100,6 +100,12 @@ class Plates(unittest.TestCase):
         self.assertIn("chair", said)
         self.assertIn("chair", report["plates"]["warnings"][0])
 
+    def test_carry_a_body_that_comes_out_of_the_air(self):
+        report, _ = self.report(*trial("DJ1"), *plates("DJ1"))
+        self.assertLess(report["mpjpe_cm"], 15)
+        # Nobody is on the boards before, and the smoothers integrate.
+        self.assertEqual(list(report["plates"]["offline"]), ["left_out"])
+
     def test_are_refused_where_they_cannot_be_of_the_trial(self):
         squats = trial("squats1")
         self.refused(4, "cannot open", *squats, "--boards", "forces", "--forces", "nowhere.mot")
