@@ -15,10 +15,6 @@ void TurnQueue::Add(Turn turn) {
   auto line = std::make_shared<Line>();
   line->push_back(std::move(turn));
   waiting_ = line;
-  ServeLater(std::move(line));
-}
-
-void TurnQueue::ServeLater(std::shared_ptr<Line> line) {
   const std::int64_t rest_ns = pace_.rests_when_empty ? rested_ns_ - clock::MonotonicNs() : 0;
   if (rest_ns > 0) return ServeAfter(rest_ns, std::move(line));
   boost::asio::post(executor_, [self = shared_from_this(), line = std::move(line)]() mutable {

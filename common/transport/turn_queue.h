@@ -44,7 +44,6 @@ class TurnQueue : public std::enable_shared_from_this<TurnQueue> {
   using Line = std::deque<Turn>;
 
   void Serve(std::shared_ptr<Line> line);
-  void ServeLater(std::shared_ptr<Line> line);
   void ServeAfter(std::int64_t rest_ns, std::shared_ptr<Line> line);
 
   boost::asio::any_io_executor executor_;
