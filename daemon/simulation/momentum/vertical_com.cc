@@ -132,14 +132,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
     still_.since_look_s += h;
     if (still_.since_look_s >= kStillLookS) {
       still_.since_look_s = 0;
-      // Nobody stands still at two loads. Where a body that hands and feet show to be still, too,
-      // should be accelerating by what its filter has learned, what it weighs has changed since.
-      const double limit_mps2 = config_.still_acceleration_mps2;
-      const double left_mps2 = LevelLeft(input, level_mps2_).mean;
-      if (config_.still_at_any_weight && posture_.anchors_s > 0 &&
-          std::abs(left_mps2) > limit_mps2 && IsWeight(left_mps2)) {
-        LearnLevel(input, level_mps2_, limit_mps2);
-      }
+      if (config_.still_at_any_weight && posture_.anchors_s > 0) LookAtLevel(input);
       if (!config_.by_rests || posture_.anchors_s <= 0) LookAtVelocity();
     }
   }

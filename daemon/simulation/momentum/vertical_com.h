@@ -149,12 +149,13 @@ class VerticalCom {
   /// Steady loads that show so much of an acceleration show a weight: were they not, the body would
   /// have moved further than its posture.
   bool IsWeight(double left_mps2) const;
+  /// Nobody stands still at two loads. Where a body that hands and feet show to be still, too,
+  /// should be accelerating by what its filter has learned, what it weighs has changed since.
+  void LookAtLevel(const VerticalInput& input);
+  /// What the cells measure too much, as the acceleration that they show of a body that has none.
   Filter::Row LevelRow(const VerticalInput& input) const;
-  /// What the loads show of a body that does not accelerate, less what the filter knows of it.
-  Filter::Scalar LevelLeft(const VerticalInput& input, double level_mps2) const;
-  /// The body does not accelerate: what they show is what the cells measure too much, to within a
-  /// deviation. What the filter knew otherwise is its doubt.
-  void LearnLevel(const VerticalInput& input, double level_mps2, double sd_mps2);
+  /// It is `level_mps2`, to within a deviation, and `left_mps2` more than the filter knew.
+  void LearnLevel(const Filter::Row& row, double level_mps2, double left_mps2, double sd_mps2);
   void LookAtVelocity();
   void Anchor();
   void AnchorToPosture(double height_m);

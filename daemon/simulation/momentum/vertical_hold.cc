@@ -62,14 +62,25 @@ void VerticalCom::LookAtTPose(const VerticalInput& input) {
   t_pose_.since_look_s += step_s_;
   if (t_pose_.since_look_s < kLookS) return;
   t_pose_.since_look_s = 0;
-  const Filter::Scalar left = LevelLeft(input, steady_.mean_mps2);
-  const bool wrong = std::abs(left.mean) > kSteadyMps2;
-  if (wrong && !IsWeight(left.mean)) return;
-  if (wrong || left.variance > std::pow(kNewLevel * kLevelSpreadMps2, 2)) {
-    LearnLevel(input, steady_.mean_mps2, kLevelSpreadMps2);
+  const Filter::Row row = LevelRow(input);
+  const Filter::Scalar known = filter_.Of(row);
+  const double left_mps2 = steady_.mean_mps2 - known.mean;
+  const bool wrong = std::abs(left_mps2) > kSteadyMps2;
+  if (wrong && !IsWeight(left_mps2)) return;
+  if (wrong || known.variance > std::pow(kNewLevel * kLevelSpreadMps2, 2)) {
+    LearnLevel(row, steady_.mean_mps2, left_mps2, kLevelSpreadMps2);
   }
   filter_.Update(Filter::Row::Unit(1), 0, kHoldMps * kHoldMps);
   filter_.Update(Filter::Row::Unit(0), 0, kHoldM * kHoldM);
+}
+
+void VerticalCom::LookAtLevel(const VerticalInput& input) {
+  const Filter::Row row = LevelRow(input);
+  const double left_mps2 = level_mps2_ - filter_.Of(row).mean;
+  const double limit_mps2 = config_.still_acceleration_mps2;
+  if (std::abs(left_mps2) > limit_mps2 && IsWeight(left_mps2)) {
+    LearnLevel(row, level_mps2_, left_mps2, limit_mps2);
+  }
 }
 
 VerticalCom::Filter::Row VerticalCom::LevelRow(const VerticalInput& input) const {
@@ -81,21 +92,15 @@ VerticalCom::Filter::Row VerticalCom::LevelRow(const VerticalInput& input) const
   return row;
 }
 
-VerticalCom::Filter::Scalar VerticalCom::LevelLeft(const VerticalInput& input,
-                                                   double level_mps2) const {
-  const Filter::Scalar known = filter_.Of(LevelRow(input));
-  return {level_mps2 - known.mean, known.variance};
-}
-
-void VerticalCom::LearnLevel(const VerticalInput& input, double level_mps2, double sd_mps2) {
-  const double left_mps2 = LevelLeft(input, level_mps2).mean;
-  if (std::abs(left_mps2) > std::max(sd_mps2, kSteadyMps2)) {
+void VerticalCom::LearnLevel(const Filter::Row& row, double level_mps2, double left_mps2,
+                             double sd_mps2) {
+  if (std::abs(left_mps2) > std::max(sd_mps2, kSteadyMps2)) {  // All that was known is in doubt.
     Filter::Matrix q = Filter::Matrix::Zero();
     q.block<VerticalInput::kGroups, VerticalInput::kGroups>(kGains, kGains)
         .setConstant(std::pow(left_mps2 / kStandardGravityMps2, 2));
     filter_.Predict(Filter::Matrix::Identity(), Filter::Vector::Zero(), q);
   }
-  filter_.Update(LevelRow(input), level_mps2, sd_mps2 * sd_mps2);
+  filter_.Update(row, level_mps2, sd_mps2 * sd_mps2);
 }
 
 }  // namespace footing::momentum

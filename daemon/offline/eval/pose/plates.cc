@@ -5,6 +5,7 @@
 
 #include "common/units/units.h"
 #include "daemon/offline/eval/momentum/offline.h"
+#include "daemon/offline/eval/scores/contact_score.h"
 #include "daemon/simulation/reconstruction/feet.h"
 
 namespace footing::eval {
@@ -12,8 +13,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Boards that carry less, for longer than a flight lasts, have nobody on them.
-constexpr double kLoadedN = 20, kMostFlightS = 1;
+// Boards without contact for longer than a flight lasts have nobody on them.
+constexpr double kMostFlightS = 1;
 
 /// The fields of a trial that measured and simulated forces are compared by.
 constexpr const char* kCompared[] = {"mpjpe_cm",
@@ -69,8 +70,8 @@ Result<ordered_json> ByForce(const pose_run::PlateRun& plates, const reconstruct
 double EmptyS(const pose_run::PoseRun& run, std::size_t from) {
   double longest_s = 0, empty_s = 0;
   for (std::size_t i = from; i < run.frames.size(); ++i) {
-    const momentum::Pressure pressure = momentum::PressureOf(run.frames[i].inputs.loads, kLoadedN);
-    empty_s = pressure.total_n < kLoadedN ? empty_s + 1 / run.rate_hz : 0;
+    const momentum::Pressure pressure = momentum::PressureOf(run.frames[i].inputs.loads, kContactN);
+    empty_s = pressure.total_n < kContactN ? empty_s + 1 / run.rate_hz : 0;
     longest_s = std::max(longest_s, empty_s);
   }
   return longest_s;
