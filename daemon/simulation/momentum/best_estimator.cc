@@ -15,7 +15,8 @@ constexpr double kAwayS = 1.0;          // Longer than any jump.
 constexpr double kAwayShare = 0.3;      // Of the weight: nobody stands on the cells.
 constexpr double kAloftShare = 0.05;    // Nobody touches them.
 constexpr double kFlightS = 0.12;       // Shorter than any jump.
-constexpr double kMostSpread = 1.0;     // m, m/s: more than this is unknown.
+// More than this is unknown.
+constexpr double kMostVarianceM2 = 1.0, kMostVarianceM2ps2 = 4.0;
 // How far the COM of bodies that step is from where the filters place it, forwards and sideways.
 constexpr std::array<double, 2> kSteppedSpreadM{0.15, 0.05};
 constexpr std::size_t kMostBoardCells = 4;  // Insoles have more, and follow steps.
@@ -110,6 +111,7 @@ const Estimate& BestEstimator::Advance(const ContactLoads& loads) {
   }
   WatchFlight(loads, gap, total);
   away_s_ = away ? away_s_ + step_s_ : 0;
+  silent_ = gap;
   if (!gap) {
     load_share_.Advance(total / (pose_.mass_kg * kStandardGravityMps2), step_s_);
     if (loads.feet[0].count <= kMostBoardCells) step_watch_.Advance(FeetForward(), step_s_);
@@ -141,7 +143,11 @@ void BestEstimator::LandElsewhere(const ContactLoads& loads) {
     horizontal_[static_cast<std::size_t>(i)].Land(both.p_WP_m(i), centre(i));
     travelling_[static_cast<std::size_t>(i)].Land(both.p_WP_m(i), centre(i));
   }
-  vertical_.Land();
+  if (silent_) {
+    vertical_.Reappear();
+  } else {
+    vertical_.Land();
+  }
   estimate_.angular_momentum_kgm2ps.setZero();
   ++estimate_.resets;
 }
@@ -220,17 +226,17 @@ void BestEstimator::ReportCom(bool sees_posture) {
     const HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
     const auto position = PlaceOn(static_cast<std::size_t>(i), sees_posture);
     estimate_.p_WC_m(i) = position.mean;
-    estimate_.position_variance_m2(i) = std::min(position.variance, kMostSpread);
+    estimate_.position_variance_m2(i) = std::min(position.variance, kMostVarianceM2);
     estimate_.v_WC_mps(i) = axis.Velocity().mean;
-    estimate_.velocity_variance_m2ps2(i) = std::min(axis.Velocity().variance, kMostSpread);
+    estimate_.velocity_variance_m2ps2(i) = std::min(axis.Velocity().variance, kMostVarianceM2ps2);
     estimate_.a_WC_mps2(i) = axis.Acceleration().mean;
   }
   const auto lagged = vertical_.Height(lag_steps_);
   estimate_.p_WC_m.z() = subject_.com_height_m + std::clamp(lagged.mean, -2.0, 2.0);
-  estimate_.position_variance_m2.z() = std::min(lagged.variance, kMostSpread);
+  estimate_.position_variance_m2.z() = std::min(lagged.variance, kMostVarianceM2);
   const auto velocity = vertical_.chosen().Velocity();
   estimate_.v_WC_mps.z() = velocity.mean;
-  estimate_.velocity_variance_m2ps2.z() = std::min(velocity.variance, kMostSpread);
+  estimate_.velocity_variance_m2ps2.z() = std::min(velocity.variance, kMostVarianceM2ps2);
   estimate_.a_WC_mps2.z() = vertical_.chosen().acceleration_mps2();
 }
 
@@ -247,7 +253,7 @@ void BestEstimator::AdvanceAngular() {
     // About x the lateral place of C counts, about y the forward one; about z nothing is seen.
     const double arm2 = i == 0   ? horizontal_[1].Position(0).variance
                         : i == 1 ? horizontal_[0].Position(0).variance
-                                 : kMostSpread;
+                                 : kMostVarianceM2;
     estimate_.angular_momentum_variance(i) =
         keep * keep * estimate_.angular_momentum_variance(i) +
         load * load * arm2 * step_s_ * config_.angular_memory_s;

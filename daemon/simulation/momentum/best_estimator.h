@@ -85,8 +85,9 @@ class BestEstimator {
   std::array<Pressure, kFeet> pressures_{};
   LoadShare load_share_;
   StepWatch step_watch_;
-  double away_s_ = 0;   // Since the feet had load, or the sources were valid.
-  double aloft_s_ = 0;  // Since the feet had any load.
+  double away_s_ = 0;    // Since the feet had load, or the sources were valid.
+  double aloft_s_ = 0;   // Since the feet had any load.
+  bool silent_ = false;  // The sources were not valid in the frame before.
   Estimate estimate_;
 };
 

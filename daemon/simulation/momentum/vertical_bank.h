@@ -47,8 +47,10 @@ class VerticalBank {
   /// Hands and feet alone have the body that high over the T-pose.
   void SeePosture(double height_m);
   void Coast();
-  /// The body is back on the cells, at an unknown height and velocity. After Start.
+  /// The body comes down onto the cells, at an unknown height and velocity. After Start.
   void Land();
+  /// The cells, which were silent, tell of a body again: it most likely just stands. After Start.
+  void Reappear();
   /// The body's feet come down, so its legs are nearly straight. False where the height is certain
   /// to be another: the flight did not begin where these filters were.
   bool CanLand() const;
@@ -86,6 +88,7 @@ class VerticalBank {
   void WatchPlay(bool seen, bool look);
   /// Whether the loads led back from rest to rest, after a posture was seen.
   void WatchReturns();
+  void ForgetReturns();
   /// What would speak if no way from rest to rest were known.
   const VerticalCom& Others() const { return loose_speaks_ ? loose_ : Tight(); }
   bool SeesPosture() const;

@@ -43,5 +43,33 @@ TEST(BestEstimator, KnowsThatAPostureDoesNotShowHowFarKneesGiveWayInALanding) {
   for (const double seen : {0.25, 1.0}) EXPECT_LT(WorstOfALanding(seen), 2) << seen;
 }
 
+// In the first frame in which a body is there again after two seconds without loads: cells that
+// tell nothing, or that tell that they are empty.
+Estimate FirstFrameAfter(bool silence) {
+  MadeBody body;
+  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  for (int i = 0; i < 120; ++i) {
+    ContactLoads loads = body.At(i * kMadeStepS);
+    for (FootLoads& foot : loads.feet) {
+      foot.valid = !silence;
+      for (Cell& cell : foot.cells) cell.load_n = 0;
+    }
+    best.Advance(loads);
+  }
+  return best.Advance(body.At(2));
+}
+
+TEST(BestEstimator, ABodyThatComesDownMayBeAsFastAsFromABoxAndOneThatReappearsStands) {
+  const Estimate landing = FirstFrameAfter(false), standing = FirstFrameAfter(true);
+  EXPECT_EQ(landing.resets, 1u);
+  EXPECT_EQ(standing.resets, 1u);
+  const double landing_sd_mps = std::sqrt(landing.velocity_variance_m2ps2.z());
+  for (const double mps : {0.0, -3.0}) {
+    EXPECT_NEAR(landing.v_WC_mps.z(), mps, 1.2 * landing_sd_mps);
+  }
+  EXPECT_NEAR(standing.v_WC_mps.z(), 0, 0.05);
+  EXPECT_LT(std::sqrt(standing.velocity_variance_m2ps2.z()), 0.6);
+}
+
 }  // namespace
 }  // namespace footing::momentum
