@@ -179,9 +179,7 @@ void VerticalBank::Land() {
 }
 
 void VerticalBank::Reappear() {
-  for (VerticalCom* filter : All()) {
-    filter->Reseed(kAnyHeightM, kAnyHeightSpreadM, 0, kReseedMps);
-  }
+  for (VerticalCom* filter : All()) filter->Reseed(kAnyHeightM, kAnyHeightSpreadM, 0, kReseedMps);
   ForgetReturns();
 }
 

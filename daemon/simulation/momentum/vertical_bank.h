@@ -49,7 +49,7 @@ class VerticalBank {
   void Coast();
   /// The body comes down onto the cells, at an unknown height and velocity. After Start.
   void Land();
-  /// The cells, which were silent, tell of a body again: it most likely just stands. After Start.
+  /// The cells, which were silent, measure a body again: it most likely stands. After Start.
   void Reappear();
   /// The body's feet come down, so its legs are nearly straight. False where the height is certain
   /// to be another: the flight did not begin where these filters were.

@@ -43,8 +43,8 @@ TEST(BestEstimator, KnowsThatAPostureDoesNotShowHowFarKneesGiveWayInALanding) {
   for (const double seen : {0.25, 1.0}) EXPECT_LT(WorstOfALanding(seen), 2) << seen;
 }
 
-// In the first frame in which a body is there again after two seconds without loads: cells that
-// tell nothing, or that tell that they are empty.
+// In the first frame in which a body is there again after two seconds: of silent cells, or of
+// empty ones.
 Estimate FirstFrameAfter(bool silence) {
   MadeBody body;
   BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
