@@ -72,6 +72,11 @@ class Bench:
             self.run("footing-train", kind, *self.motions(few), "--exclude", person, "--seed", 1, "--out", out)
         return out
 
+    @once
+    def one_left_out(self):
+        """Every person in turn, with all clips in place, and with true values (ten minutes)."""
+        return self.run("footing-train", "people", *self.motions(), "--ablations")
+
     def cmu(self, clip):
         subject, folder = clip.split("_")[0], self.data / "mocap/cmu_amc"
         return (subject, folder / f"{clip}.amc", folder / f"{subject}_reconstructed.asf")
@@ -89,7 +94,11 @@ class Bench:
     @once
     def pose(self, clip, *words, few=False):
         person, motion, skeleton = clip
-        kinds = ("pose", "com") if PAPER[1] in words or "--ablations" in words else ("pose",)
+        kinds = ["pose"]
+        if PAPER[1] in words or "--ablations" in words:
+            kinds.append("com")
+        if "wiimote" in words:
+            kinds.append("arm")
         models = [word for kind in kinds for word in ("--model", self.model(person, kind, few))]
         baselines = () if "--baselines" in words else ("--no-baselines",)
         return self.run("footing-eval", "pose", "--motion", motion, "--skeleton", skeleton, *models, "--seed", SEED,

@@ -14,7 +14,7 @@ import pathlib
 import sys
 import tempfile
 
-from left_out import BASELINES, PAPER, SEEDS, WITHOUT_L, WRONG_CELLS, WRONG_WEIGHTS, Bench, field, mean, once
+from left_out import BASELINES, PAPER, SEEDS, WITHOUT_L, WRONG_CELLS, WRONG_WEIGHTS, Bench, field, mean
 
 ANGLES = ("hip", "knee", "elbow", "chest")
 CELL_ERRORS = ("--gain-error", 0.01, "--slow-force-n", 1.06)
@@ -42,16 +42,12 @@ def beyond(value, low, high):
 
 def one_left_out_rows(bench):
     """Of every person in turn, with all clips in place."""
-    @once
-    def table():
-        return bench.run("footing-train", "people", *bench.motions())
-
     def figure(path):
-        return lambda: field(table()["all"], path)
+        return lambda: field(bench.one_left_out()["all"], path)
 
     def worst_gain():
         """Of the activities, in percent below hands and feet."""
-        return -100 * min(activity["gain_over_learned"] for activity in table()["activities"].values())
+        return -100 * min(activity["gain_over_learned"] for activity in bench.one_left_out()["activities"].values())
 
     rows = [Row("MPJPE", 6, 5.5, figure("best.mpjpe_cm")),
             Row("MPJPE, below that of hands and feet, learned, by", -25, -25,
