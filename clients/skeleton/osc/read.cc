@@ -211,7 +211,10 @@ std::int64_t ToUnixNs(TimeTag tag) {
   const auto whole = static_cast<std::int64_t>(tag.ntp >> 32);
   const std::uint64_t part = tag.ntp & 0xFFFF'FFFF;
   const std::int64_t era_s = whole < (1ll << 31) ? static_cast<std::int64_t>(kEraS) : 0;
-  const auto rest_ns = static_cast<std::int64_t>((part * 1'000'000'000ull + (1ull << 31)) >> 32);
+  // What rounds up to the next second stays in its own: after the last one comes another era.
+  const auto rest_ns =
+      std::min(static_cast<std::int64_t>((part * 1'000'000'000ull + (1ull << 31)) >> 32),
+               kNanosecondsPerSecond - 1);
   return (whole + era_s - kUnixInNtpS) * kNanosecondsPerSecond + rest_ns;
 }
 

@@ -126,6 +126,10 @@ TEST(Osc, ConvertsNtpTimeAcrossItsEras) {
         std::int64_t{3'000'000'000'999'999'999}})
     EXPECT_EQ(ToUnixNs(ToTimeTag(ns)), ns);
   EXPECT_TRUE(TimeTag{}.immediate());
+  // The last part of the last second, in 2104: the next second would be in 1968.
+  const std::int64_t last_ns = ToUnixNs({0x7FFF'FFFF'FFFF'FFFF});
+  EXPECT_EQ(last_ns % 1'000'000'000, 999'999'999);
+  EXPECT_EQ(ToUnixNs(ToTimeTag(last_ns)), last_ns);
 }
 
 }  // namespace
