@@ -23,6 +23,9 @@ WRONG_WEIGHTS = {"weighed 5 % too heavy": ("--mass-error", "0.05"), "weighed 5 %
 WRONG_CELLS = {"5 N of hysteresis": ("--hysteresis-n", "5"), "gains 3 %, 3 N slow, 5 N of hysteresis":
                ("--gain-error", "0.03", "--slow-force-n", "3", "--hysteresis-n", "5")}
 SEEDS = (1, 2, 3)
+FIVE_MINUTES = ("--loop-minutes", "5")
+CELL_ERRORS = ("--gain-error", "0.01", "--slow-force-n", "1.06")
+LEARNED = "baselines.hands_feet_learned.mpjpe_cm"  # The error of hands and feet alone, in a row.
 
 
 def once(function):

@@ -14,10 +14,10 @@ import pathlib
 import sys
 import tempfile
 
-from left_out import BASELINES, PAPER, SEEDS, WITHOUT_L, WRONG_CELLS, WRONG_WEIGHTS, Bench, field, mean
+from left_out import (BASELINES, CELL_ERRORS, FIVE_MINUTES, LEARNED, PAPER, SEEDS, WITHOUT_L, WRONG_CELLS,
+                      WRONG_WEIGHTS, Bench, field, mean)
 
 ANGLES = ("hip", "knee", "elbow", "chest")
-CELL_ERRORS = ("--gain-error", 0.01, "--slow-force-n", 1.06)
 
 
 class Row:
@@ -33,6 +33,12 @@ class Row:
         sign = -1 if self.aim < 0 else 1
         shown = [f"{sign * x:.4g}" for x in (value, self.aim, self.limit)]
         return verdict, f"{self.name}: {shown[0]} {self.unit} (aim: {shown[1]}, limit: {shown[2]})".replace("  ", " ")
+
+
+def named(whose, rows):
+    for row in rows:
+        row.name = f"{whose}: {row.name}"
+    return rows
 
 
 def beyond(value, low, high):
@@ -58,9 +64,7 @@ def one_left_out_rows(bench):
                  lambda part=part: beyond(figure(f"nees{part}")(), 0.7, 1.4), "") for part in ("", "_legs", "_arms")]
     rows += [Row("angle, knee", 9, 10.5, figure("best.knee_deg"), "degrees"),
              Row("angle, hip", 14, 18.3, figure("best.hip_deg"), "degrees")]
-    for row in rows:
-        row.name = f"one person left out: {row.name}"
-    return rows
+    return named("one person left out", rows)
 
 
 def people_rows(bench, who, limits):
@@ -71,7 +75,7 @@ def people_rows(bench, who, limits):
 
     def gain():
         rows = bench.rows(clips, BASELINES)
-        return 100 * (mean(rows, "mpjpe_cm") / mean(rows, "baselines.hands_feet_learned.mpjpe_cm") - 1)
+        return 100 * (mean(rows, "mpjpe_cm") / mean(rows, LEARNED) - 1)
 
     def than_paper():
         return -mean(bench.rows(clips, WITHOUT_L), "mpjpe_cm") / mean(bench.rows(clips, BASELINES), "mpjpe_cm")
@@ -110,9 +114,7 @@ def people_rows(bench, who, limits):
     aims = {"hip": 14, "knee": 9, "elbow": 13, "chest": 11}
     rows += [Row(f"angle, {joint}", aims[joint], limits[joint],
                  figure(f"joint_angle_error_deg.{joint}", *BASELINES), "degrees") for joint in ANGLES]
-    for row in rows:
-        row.name = f"{who}: {row.name}"
-    return rows
+    return named(who, rows)
 
 
 def momentum_rows(bench):
@@ -121,14 +123,13 @@ def momentum_rows(bench):
     def figure(path, *words):
         return lambda: mean(bench.rows(clips, words or BASELINES), path)
 
-    five_minutes = ("--loop-minutes", 5)
     return [Row("CMU 14: COM forward", 1.5, 1.5, figure("com_forward_rms_cm")),
             Row("CMU 14: COM lateral", 1.5, 1.7, figure("com_lateral_rms_cm")),
             Row("CMU 14: COM forward, 200 ms", 1, 1, figure("com_forward_rms_cm", "--lag-ms", 200)),
             Row("CMU 14: COM lateral, 200 ms", 1, 1, figure("com_lateral_rms_cm", "--lag-ms", 200)),
-            Row("CMU 14: COM vertical, 5 minutes, white noise", 3, 3, figure("com_vertical_rms_cm", *five_minutes)),
+            Row("CMU 14: COM vertical, 5 minutes, white noise", 3, 3, figure("com_vertical_rms_cm", *FIVE_MINUTES)),
             Row("CMU 14: COM vertical, 5 minutes, gain and slow errors", 5, 5,
-                figure("com_vertical_rms_cm", *five_minutes, *CELL_ERRORS))]
+                figure("com_vertical_rms_cm", *FIVE_MINUTES, *CELL_ERRORS))]
 
 
 def plates_rows(bench):
