@@ -23,7 +23,9 @@ struct GaussNewtonOptions {
 
 /// Minimises equation (6) over all coefficients of a basis at once, each term divided by its
 /// standard deviation, with a Gaussian prior over the coefficients: the most likely pose. A step
-/// that makes it worse is taken back and tried again shorter (Levenberg 1944).
+/// that makes it worse is taken back and tried again shorter (Levenberg 1944). A fast motion can
+/// leave the last frame's pose next to another minimum, such as a pelvis upside down; a frame that
+/// the targets contradict is therefore solved from the likely pose as well.
 ///
 /// Nothing allocates after the constructor.
 class GaussNewton {
@@ -58,6 +60,12 @@ class GaussNewton {
   /// Equation (6) where Measure was called last, but for what is equal everywhere.
   double Cost();
   void TakeStep(double damping);
+  /// Steps from q_, which becomes the best of them. Returns its cost.
+  double Descend(const PoseTargets& targets, int iterations);
+  /// The standard deviations about q_, without damping.
+  void Linearise(const PoseTargets& targets);
+  /// Leaves a local minimum that is much worse than the one next to the likely pose.
+  void DescendFromLikely(const PoseTargets& targets, const Eigen::VectorXd& likely_q);
 
   const PoseBasis* basis_;
   GaussNewtonOptions options_;
@@ -67,7 +75,7 @@ class GaussNewton {
   MeasuredTerms terms_;
   PoseUpdate update_;
   Eigen::MatrixXd whitening_;  ///< From q - mean to coefficients over their deviations.
-  Eigen::VectorXd q_, q_before_, q_best_, mean_before_;
+  Eigen::VectorXd q_, q_before_, q_best_, q_last_, mean_before_;
   Eigen::VectorXd centre_;    ///< Where mean and smoothness alone would have q.
   Eigen::VectorXd offset_q_;  ///< Of q from the centre or the mean, or a part of that.
   Eigen::VectorXd whitened_;

@@ -1,85 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "common/body/landmarks.h"
 #include "daemon/simulation/pose/fibonacci.h"
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/pose/leg_ik.h"
+#include "tests/simulation/pose/made_poses.h"
 
 namespace footing::pose {
 namespace {
 
 using body::Landmark;
-
-body::Body Person() {
-  body::PersonParameters parameters;
-  parameters.mass_kg = 70;
-  parameters.height_m = 1.75;
-  return body::MakeBody(body::StandardPerson(1.75), parameters).value();
-}
-
-/// Poses about the T-pose: a few correlated ways to move, like a person's.
-Eigen::MatrixXd Poses(const body::Body& person, int count, int ways, std::uint32_t seed) {
-  std::mt19937 engine(seed);
-  std::normal_distribution<double> normal;
-  const int dof = person.skeleton.dof;
-  Eigen::MatrixXd directions(dof, ways);
-  for (int i = 0; i < directions.size(); ++i) directions(i) = 0.08 * normal(engine);
-  directions.topRows<3>() *= 0.3;
-  Eigen::MatrixXd poses(dof, count);
-  const Eigen::VectorXd rest = body::TPose(person.skeleton, person.landmarks);
-  for (int i = 0; i < count; ++i) {
-    poses.col(i) = rest;
-    for (int way = 0; way < ways; ++way) {
-      poses.col(i) += normal(engine) / (1 + 0.2 * way) * directions.col(way);
-    }
-  }
-  return poses;
-}
-
-struct World {
-  body::Body person = Person();
-  Eigen::MatrixXd poses = Poses(person, 400, 12, 1);
-  PoseBasis basis = FitBasis(poses, {});
-  body::Kinematics at{person.skeleton};
-
-  Eigen::Vector3d At(const Eigen::VectorXd& q, Landmark landmark) {
-    body::ComputeKinematics(person.skeleton, q, at);
-    return at.p_WJ[static_cast<std::size_t>(person.landmarks[landmark])];
-  }
-
-  /// Hands, feet and COM of a pose, as if measured exactly.
-  PoseTargets Targets(const Eigen::VectorXd& q, double sd_m) {
-    PoseTargets targets;
-    for (const Landmark landmark :
-         {Landmark::kLeftWrist, Landmark::kRightWrist, Landmark::kLeftAnkle, Landmark::kRightAnkle,
-          Landmark::kLeftToe, Landmark::kRightToe}) {
-      PointTarget point;
-      point.joint = person.landmarks[landmark];
-      point.p_W_m = At(q, landmark);
-      point.sd_m.setConstant(sd_m);
-      targets.Add(point);
-    }
-    targets.has_com = true;
-    targets.com_W_m = body::CentreOfMass(person, at);
-    targets.com_sd_m.setConstant(sd_m);
-    return targets;
-  }
-
-  double WorstM(const Eigen::VectorXd& q, const PoseTargets& targets) {
-    body::ComputeKinematics(person.skeleton, q, at);
-    double worst_m =
-        targets.has_com ? (targets.com_W_m - body::CentreOfMass(person, at)).norm() : 0;
-    for (int i = 0; i < targets.count; ++i) {
-      const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
-      const auto joint = static_cast<std::size_t>(point.joint);
-      worst_m =
-          std::max(worst_m, (point.p_W_m - at.p_WJ[joint] - at.R_WJ[joint] * point.p_J_m).norm());
-    }
-    return worst_m;
-  }
-};
 
 TEST(PoseTargets, APointMayBePlacedFromAnotherJoint) {
   World world;
@@ -125,119 +54,6 @@ TEST(Basis, ItsComponentsFallInVarianceAndAShareOfItTakesFewer) {
   const PoseBasis fewer = FitBasis(world.poses, {.variance_share = 0.5});
   EXPECT_LT(fewer.size(), world.basis.size());
   EXPECT_GE(fewer.sd.squaredNorm(), 0.5 * world.basis.sd.squaredNorm());
-}
-
-TEST(GaussNewton, ALegDoesNotBendBackwards) {
-  World world;
-  Eigen::VectorXd q = body::TPose(world.person.skeleton, world.person.landmarks);
-  PoseTargets targets = world.Targets(q, 0.02);
-  PointTarget knee;
-  knee.joint = world.person.landmarks[Landmark::kLeftKnee];
-  knee.p_W_m = world.At(q, Landmark::kLeftKnee) - Eigen::Vector3d(0.2, 0, 0);
-  knee.sd_m.setConstant(0.05);
-  targets.Add(knee);
-  GaussNewtonOptions options;
-  options.prior_weight = 0.1;
-  const PoseBasis basis = FitBasis(Poses(world.person, 400, 60, 2), {});  // Any angle may change.
-  GaussNewton solver(world.person, basis, options);
-  solver.Solve(targets);
-  const int dof = world.person.skeleton.joint(knee.joint).first_dof;
-  const double limit_rad = body::LowerLimits(world.person.skeleton)(dof);
-  EXPECT_GT(solver.q()(dof), limit_rad - 0.1);
-}
-
-TEST(GaussNewton, FindsAPoseOfTheSpaceFromHandsFeetAndCentreOfMass) {
-  World world;
-  for (int i = 0; i < 20; ++i) {
-    GaussNewton solver(world.person, world.basis, {});
-    const PoseTargets targets = world.Targets(world.poses.col(i), 1e-5);
-    solver.Solve(targets);
-    EXPECT_LT(world.WorstM(solver.q(), targets), 1e-3) << i;
-    EXPECT_LT((solver.q() - world.poses.col(i)).tail(53).cwiseAbs().mean(), 0.01) << i;
-  }
-}
-
-TEST(GaussNewton, KnowsBestWhatIsMeasured) {
-  World world;
-  GaussNewton solver(world.person, world.basis, {});
-  PoseTargets targets = world.Targets(world.poses.col(3), 0.01);
-  targets.has_com = false;
-  solver.Solve(targets);
-  const int wrist = world.person.landmarks[Landmark::kLeftWrist];
-  const double measured_m = solver.JointSd(wrist);
-  solver.Reset();
-  solver.Solve({});
-  const double free_m = solver.JointSd(wrist);
-  EXPECT_LT(measured_m, 0.012);  // Not much worse than its own measurement.
-  EXPECT_GT(free_m, 3 * measured_m);
-}
-
-TEST(GaussNewton, KnowsTheHeightOfTheCentreOfMassBetterWhereItIsMeasured) {
-  World world;
-  GaussNewton solver(world.person, world.basis, {});
-  PoseTargets targets = world.Targets(world.poses.col(3), 0.01);
-  targets.com_sd_m << 1, 1, 0.002;
-  solver.Solve(targets);
-  const double measured_m = solver.ComSd().z();
-  targets.com_sd_m.setConstant(1);
-  solver.Reset();
-  solver.Solve(targets);
-  EXPECT_LT(measured_m, 0.002);
-  EXPECT_GT(solver.ComSd().z(), 1.5 * measured_m);
-}
-
-TEST(GaussNewton, GoesOnFromAPoseThatItIsGiven) {
-  World world;
-  GaussNewtonOptions options;
-  options.smooth_weight = 100;  // Stays where it was.
-  GaussNewton solver(world.person, world.basis, options);
-  solver.ContinueFrom(world.poses.col(5));
-  solver.Solve({});
-  EXPECT_LT((solver.q() - world.poses.col(5)).norm(), 1e-2);
-}
-
-TEST(GaussNewton, MovesAsItsPriorsMeanMoves) {
-  World world;
-  GaussNewtonOptions options;
-  options.prior_weight = 0;
-  GaussNewton solver(world.person, world.basis, options);
-  const Eigen::VectorXd mean = world.basis.mean + 0.5 * world.basis.modes * world.basis.sd;
-  solver.Solve({}, world.basis.mean);
-  solver.Solve({}, mean);
-  EXPECT_LT((solver.q() - mean).norm(), 1e-6);
-}
-
-TEST(GaussNewton, WithNothingMeasuredStaysAtThePriorsMean) {
-  World world;
-  GaussNewton solver(world.person, world.basis, {});
-  const Eigen::VectorXd mean = world.basis.mean + 0.5 * world.basis.modes * world.basis.sd;
-  solver.Solve({}, mean);
-  EXPECT_LT((solver.q() - mean).norm(), 1e-12);
-}
-
-TEST(GaussNewton, AngularMomentumMovesWhatHandsAndFeetDoNotShow) {
-  World world;
-  const double frame_s = 1.0 / 60;
-  GaussNewton solver(world.person, world.basis, {.iterations = 8, .smooth_weight = 0});
-  const Eigen::VectorXd before = world.poses.col(3), direction = world.basis.modes.col(2);
-  const Eigen::VectorXd after = before + 0.1 * world.basis.sd(2) * direction;
-  solver.Solve(world.Targets(before, 1e-5));
-  PoseTargets targets;
-  targets.has_angular = true;
-  targets.angular_sd.setConstant(1e-4);
-  body::JointVelocities velocities(world.person.skeleton);
-  body::ComputeKinematics(world.person.skeleton, after, world.at);
-  body::ComputeVelocities(world.person.skeleton, world.at, (after - solver.q()) / frame_s,
-                          velocities);
-  targets.angular_W = body::ComputeMomentum(world.person, world.at, velocities).angular_W;
-  const Eigen::VectorXd was = solver.q();
-  solver.Solve(targets);
-  body::ComputeKinematics(world.person.skeleton, solver.q(), world.at);
-  body::ComputeVelocities(world.person.skeleton, world.at, (solver.q() - was) / frame_s,
-                          velocities);
-  const Eigen::Vector3d reached =
-      body::ComputeMomentum(world.person, world.at, velocities).angular_W;
-  EXPECT_LT((reached - targets.angular_W).norm(), 0.02 * targets.angular_W.norm());
 }
 
 TEST(FibonacciSearch, LowersEquation6FrameByFrame) {

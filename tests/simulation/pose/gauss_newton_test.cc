@@ -1,0 +1,165 @@
+#include "daemon/simulation/pose/gauss_newton.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "common/units/units.h"
+#include "tests/simulation/pose/made_poses.h"
+
+namespace footing::pose {
+namespace {
+
+using body::Landmark;
+
+TEST(GaussNewton, ALegDoesNotBendBackwards) {
+  World world;
+  Eigen::VectorXd q = body::TPose(world.person.skeleton, world.person.landmarks);
+  PoseTargets targets = world.Targets(q, 0.02);
+  PointTarget knee;
+  knee.joint = world.person.landmarks[Landmark::kLeftKnee];
+  knee.p_W_m = world.At(q, Landmark::kLeftKnee) - Eigen::Vector3d(0.2, 0, 0);
+  knee.sd_m.setConstant(0.05);
+  targets.Add(knee);
+  GaussNewtonOptions options;
+  options.prior_weight = 0.1;
+  const PoseBasis basis = FitBasis(Poses(world.person, 400, 60, 2), {});  // Any angle may change.
+  GaussNewton solver(world.person, basis, options);
+  solver.Solve(targets);
+  const int dof = world.person.skeleton.joint(knee.joint).first_dof;
+  const double limit_rad = body::LowerLimits(world.person.skeleton)(dof);
+  EXPECT_GT(solver.q()(dof), limit_rad - 0.1);
+}
+
+TEST(GaussNewton, FindsAPoseOfTheSpaceFromHandsFeetAndCentreOfMass) {
+  World world;
+  for (int i = 0; i < 20; ++i) {
+    GaussNewton solver(world.person, world.basis, {});
+    const PoseTargets targets = world.Targets(world.poses.col(i), 1e-5);
+    solver.Solve(targets);
+    EXPECT_LT(world.WorstM(solver.q(), targets), 1e-3) << i;
+    EXPECT_LT((solver.q() - world.poses.col(i)).tail(53).cwiseAbs().mean(), 0.01) << i;
+  }
+}
+
+TEST(GaussNewton, KnowsBestWhatIsMeasured) {
+  World world;
+  GaussNewton solver(world.person, world.basis, {});
+  PoseTargets targets = world.Targets(world.poses.col(3), 0.01);
+  targets.has_com = false;
+  solver.Solve(targets);
+  const int wrist = world.person.landmarks[Landmark::kLeftWrist];
+  const double measured_m = solver.JointSd(wrist);
+  solver.Reset();
+  solver.Solve({});
+  const double free_m = solver.JointSd(wrist);
+  EXPECT_LT(measured_m, 0.012);  // Not much worse than its own measurement.
+  EXPECT_GT(free_m, 3 * measured_m);
+}
+
+TEST(GaussNewton, KnowsTheHeightOfTheCentreOfMassBetterWhereItIsMeasured) {
+  World world;
+  GaussNewton solver(world.person, world.basis, {});
+  PoseTargets targets = world.Targets(world.poses.col(3), 0.01);
+  targets.com_sd_m << 1, 1, 0.002;
+  solver.Solve(targets);
+  const double measured_m = solver.ComSd().z();
+  targets.com_sd_m.setConstant(1);
+  solver.Reset();
+  solver.Solve(targets);
+  EXPECT_LT(measured_m, 0.002);
+  EXPECT_GT(solver.ComSd().z(), 1.5 * measured_m);
+}
+
+TEST(GaussNewton, GoesOnFromAPoseThatItIsGiven) {
+  World world;
+  GaussNewtonOptions options;
+  options.smooth_weight = 100;  // Stays where it was.
+  GaussNewton solver(world.person, world.basis, options);
+  solver.ContinueFrom(world.poses.col(5));
+  solver.Solve({});
+  EXPECT_LT((solver.q() - world.poses.col(5)).norm(), 1e-2);
+}
+
+TEST(GaussNewton, LeavesAMinimumThatIsFarFromTheLikelyPose) {
+  World world;
+  const int pitch = world.person.skeleton.joint(0).first_dof;
+  Eigen::MatrixXd poses = world.poses;
+  std::mt19937 engine(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < poses.cols(); ++i) poses(pitch, i) += normal(engine);
+  const PoseBasis basis = FitBasis(poses, {});
+  const Eigen::VectorXd truth = world.poses.col(7);
+  const PoseTargets targets = world.Targets(truth, 0.01);
+  Eigen::VectorXd turned = truth;  // By a whole turn, which no target can tell from the truth.
+  turned(pitch) += 2 * kPi;
+  GaussNewton solver(world.person, basis, {});
+  solver.ContinueFrom(turned);
+  ASSERT_GT(solver.q()(pitch), truth(pitch) + 5);
+  solver.Solve(targets);
+  EXPECT_NEAR(solver.q()(pitch), truth(pitch), 0.3);
+  EXPECT_LT(world.WorstM(solver.q(), targets), 0.02);
+}
+
+TEST(GaussNewton, StaysInAMinimumThatIsNoWorse) {
+  World world;
+  PoseTargets targets = world.Targets(world.poses.col(7), 0.01);
+  targets.points[0].p_W_m.x() += 1;  // A wrist out of reach: no start is near.
+  GaussNewton solver(world.person, world.basis, {});
+  solver.Solve(targets);  // With more steps than a second start has.
+  ASSERT_GT(world.WorstM(solver.q(), targets), 0.3);
+  const Eigen::VectorXd settled = solver.q();
+  const double settled_m = solver.JointSd(targets.points[0].joint);
+  solver.Solve(targets);
+  EXPECT_LT((solver.q() - settled).norm(), 0.1);
+  EXPECT_NEAR(solver.JointSd(targets.points[0].joint), settled_m, 4e-4);
+  body::ComputeKinematics(world.person.skeleton, solver.q(), world.at);
+  EXPECT_EQ(solver.at().p_WJ, world.at.p_WJ);  // It tells where it has brought the joints.
+}
+
+TEST(GaussNewton, MovesAsItsPriorsMeanMoves) {
+  World world;
+  GaussNewtonOptions options;
+  options.prior_weight = 0;
+  GaussNewton solver(world.person, world.basis, options);
+  const Eigen::VectorXd mean = world.basis.mean + 0.5 * world.basis.modes * world.basis.sd;
+  solver.Solve({}, world.basis.mean);
+  solver.Solve({}, mean);
+  EXPECT_LT((solver.q() - mean).norm(), 1e-6);
+}
+
+TEST(GaussNewton, WithNothingMeasuredStaysAtThePriorsMean) {
+  World world;
+  GaussNewton solver(world.person, world.basis, {});
+  const Eigen::VectorXd mean = world.basis.mean + 0.5 * world.basis.modes * world.basis.sd;
+  solver.Solve({}, mean);
+  EXPECT_LT((solver.q() - mean).norm(), 1e-12);
+}
+
+TEST(GaussNewton, AngularMomentumMovesWhatHandsAndFeetDoNotShow) {
+  World world;
+  const double frame_s = 1.0 / 60;
+  GaussNewton solver(world.person, world.basis, {.iterations = 8, .smooth_weight = 0});
+  const Eigen::VectorXd before = world.poses.col(3), direction = world.basis.modes.col(2);
+  const Eigen::VectorXd after = before + 0.1 * world.basis.sd(2) * direction;
+  solver.Solve(world.Targets(before, 1e-5));
+  PoseTargets targets;
+  targets.has_angular = true;
+  targets.angular_sd.setConstant(1e-4);
+  body::JointVelocities velocities(world.person.skeleton);
+  body::ComputeKinematics(world.person.skeleton, after, world.at);
+  body::ComputeVelocities(world.person.skeleton, world.at, (after - solver.q()) / frame_s,
+                          velocities);
+  targets.angular_W = body::ComputeMomentum(world.person, world.at, velocities).angular_W;
+  const Eigen::VectorXd was = solver.q();
+  solver.Solve(targets);
+  body::ComputeKinematics(world.person.skeleton, solver.q(), world.at);
+  body::ComputeVelocities(world.person.skeleton, world.at, (solver.q() - was) / frame_s,
+                          velocities);
+  const Eigen::Vector3d reached =
+      body::ComputeMomentum(world.person, world.at, velocities).angular_W;
+  EXPECT_LT((reached - targets.angular_W).norm(), 0.02 * targets.angular_W.norm());
+}
+
+}  // namespace
+}  // namespace footing::pose
