@@ -131,6 +131,12 @@ bool StaysInPlace(const Clip& clip) {
   return true;
 }
 
+std::string Listed(const std::set<std::string>& subjects) {
+  std::string list;
+  for (const std::string& subject : subjects) list += (list.empty() ? "" : ", ") + subject;
+  return list.empty() ? "none" : list;
+}
+
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {
   command.add_option("--motions", options.folders,
                      "Folder of motion files, *.bvh, or *.amc with their *.asf; may be repeated");
@@ -159,7 +165,9 @@ Result<Clips> ReadClips(const MotionOptions& options) {
   }
   for (const std::string& subject : exclude) {
     if (left_out.count(subject) == 0) {
-      return UsageError("--exclude " + subject + ": no file of that subject is there");
+      subjects.merge(left_out);
+      return UsageError("--exclude " + subject + ": no file of that subject is there; there are " +
+                        Listed(subjects));
     }
   }
   if (clips.train.empty() && !options.folders.empty()) {

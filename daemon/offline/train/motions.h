@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ Result<Clip> ReadClip(const std::string& file, const std::string& skeleton = "")
 
 /// Fits a clip of another layout to the standard one. Returns the residual, m; 0 for the standard.
 Result<double> FitToStandardLayout(Clip& clip);
+
+/// "1, 13, HDM_bd", for an error.
+std::string Listed(const std::set<std::string>& subjects);
 
 /// Every *.bvh and *.amc of the folders, by name. An AMC file's skeleton is SUBJECT.asf beside it,
 /// or else the first SUBJECT_*.asf. Where layouts differ, those to train on are fitted to the

@@ -147,7 +147,8 @@ Result<std::vector<std::string>> PeopleOf(const std::vector<Clip>& clips,
     asked.insert(model::SubjectName(name));
     if (people.count(model::SubjectName(name)) == 0) {
       return UsageError("--only " + name +
-                        ": no motion of that subject that stays in place is there");
+                        ": no motion of that subject that stays in place is there; there are " +
+                        Listed(people));
     }
   }
   return std::vector(asked.begin(), asked.end());

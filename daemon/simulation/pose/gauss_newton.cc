@@ -127,13 +127,17 @@ void GaussNewton::Linearise(const PoseTargets& targets) {
 }
 
 void GaussNewton::DescendFromLikely(const PoseTargets& targets, const Eigen::VectorXd& likely_q) {
-  const double smooth = std::exchange(smooth_, 0);  // Both starts are judged without it.
+  // Both starts are judged without what ties them to the last frame.
+  const double smooth = std::exchange(smooth_, 0);
   centre_ = likely_q;
+  if (Cost() <= kDoubtPerRow * terms_.rows()) return;
+  PoseTargets still = targets;
+  still.has_angular = false;
+  Measure(still);
   const double cost = Cost();
-  if (cost <= kDoubtPerRow * terms_.rows()) return;
   q_last_ = q_;
   q_ = likely_q;
-  if (Descend(targets, kSecondIterations) < kMuchBetter * cost) return;
+  if (Descend(still, kSecondIterations) < kMuchBetter * cost) return;
   q_ = q_last_;
   smooth_ = smooth;
   Measure(targets);

@@ -204,8 +204,10 @@ class Train(unittest.TestCase):
 
     def test_bad_motions_are_refused_by_name(self):
         folder = self.motions()
-        self.refused(2, "--exclude 7: no file of that subject", "basis", "--motions", folder, "--exclude",
-                     7, "--out", self.out)
+        self.refused(2, "--exclude 7: no file of that subject is there; there are 1, 2", "basis", "--motions",
+                     folder, "--exclude", 7, "--out", self.out)
+        self.refused(2, "--only 7: no motion of that subject that stays in place is there; there are 1, 2",
+                     "people", "--motions", folder, "--only", 7)
         (folder / "3_01.bvh").write_text("HIERARCHY\nnonsense")
         self.refused(4, "3_01.bvh", "basis", "--motions", folder, "--out", self.out)
         self.refused(1, "cannot list", "com", "--motions", folder / "none", "--out", self.out)
