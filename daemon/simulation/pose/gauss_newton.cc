@@ -130,14 +130,11 @@ void GaussNewton::DescendFromLikely(const PoseTargets& targets, const Eigen::Vec
   // Both starts are judged without what ties them to the last frame.
   const double smooth = std::exchange(smooth_, 0);
   centre_ = likely_q;
-  if (Cost() <= kDoubtPerRow * terms_.rows()) return;
-  PoseTargets still = targets;
-  still.has_angular = false;
-  Measure(still);
   const double cost = Cost();
+  if (cost <= kDoubtPerRow * terms_.rows()) return;
   q_last_ = q_;
   q_ = likely_q;
-  if (Descend(still, kSecondIterations) < kMuchBetter * cost) return;
+  if (Descend(targets, kSecondIterations) < kMuchBetter * cost) return;
   q_ = q_last_;
   smooth_ = smooth;
   Measure(targets);
@@ -149,7 +146,8 @@ void GaussNewton::Solve(const PoseTargets& targets, const Eigen::VectorXd& likel
   const bool first = !started_;
   Start(likely_q);
   Descend(targets, first ? options_.first_iterations : options_.iterations);
-  if (!first && targets.count > 0) DescendFromLikely(targets, likely_q);
+  // An angular momentum is measured from the last frame's pose: no jump could agree with it.
+  if (!first && targets.count > 0 && !targets.has_angular) DescendFromLikely(targets, likely_q);
   started_ = true;
 }
 
