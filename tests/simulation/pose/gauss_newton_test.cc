@@ -87,7 +87,7 @@ TEST(GaussNewton, LeavesAMinimumThatIsFarFromTheLikelyPose) {
   Eigen::MatrixXd poses = world.poses;
   std::mt19937 engine(5);
   std::normal_distribution<double> normal;
-  for (int i = 0; i < poses.cols(); ++i) poses(pitch, i) += normal(engine);
+  for (int i = 0; i < poses.cols(); ++i) poses(pitch, i) += 0.5 * normal(engine);
   const PoseBasis basis = FitBasis(poses, {});
   const Eigen::VectorXd truth = world.poses.col(7);
   const PoseTargets targets = world.Targets(truth, 0.01);
