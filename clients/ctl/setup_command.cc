@@ -62,6 +62,21 @@ Result<std::vector<guide::Item>> Validate(SetUpArguments& arguments) {
   return items;
 }
 
+/// An item that was asked for by name, and for which the rig has no device, was not done.
+Result<void> AllDone(const std::vector<guide::Item>& items,
+                     const std::vector<stream::SetupItem>& results, const std::string& rig) {
+  for (const guide::Item item : items) {
+    const std::string name = guide::Name(item);
+    const bool done = std::any_of(results.begin(), results.end(),
+                                  [&](const stream::SetupItem& one) { return one.name == name; });
+    if (!done) {
+      return NoDevice("--only " + name + ": nothing done, rig " + rig +
+                      " has no attached device for it; footing-ctl devices lists them");
+    }
+  }
+  return {};
+}
+
 Result<void> Setup(Session& session, const SetUpArguments& arguments,
                    const std::vector<guide::Item>& items, const Shared& shared) {
   const auto results =
@@ -78,7 +93,7 @@ Result<void> Setup(Session& session, const SetUpArguments& arguments,
   for (const auto& result : *results) {
     if (!result.passed) return Failure(ToText(result));
   }
-  return {};
+  return AllDone(items, *results, arguments.options.rig);
 }
 
 }  // namespace

@@ -159,6 +159,8 @@ int main(int argc, char** argv) {
   auto* sample = app->add_subcommand(
       "sample", "Write small sample files for the examples of every program, and end");
   sample->add_option("FOLDER", sample_folder, "Folder to write into (default: this one)");
+  bool replace = false;
+  sample->add_flag("--force", replace, "Replace files of the same names that have other content");
   stream_client::PlayersOptions players;
   auto* runner = stream_client::AddRunnerCommand(*app, players);
   auto* builder = stream_client::AddBuilderCommand(*app, players);
@@ -169,7 +171,7 @@ int main(int argc, char** argv) {
   log::Start("footing-stream", quiet);
 
   if (*sample) {
-    const auto written = stream_client::WriteSampleFiles(sample_folder);
+    const auto written = stream_client::WriteSampleFiles(sample_folder, replace);
     return written ? 0 : cli::Report(written.error());
   }
   if (*replay) return Run(stream_client::PlanReplay(recording, common), common);

@@ -161,6 +161,16 @@ std::string SampleStudy(const SampleMeasure& measure, std::uint64_t seed) {
   return text;
 }
 
+bool HasOtherContent(const std::string& path, const std::string& text) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return false;
+  std::ifstream in(path, std::ios::binary);
+  std::string is(text.size() + 1, '\0');
+  in.read(is.data(), static_cast<std::streamsize>(is.size()));
+  is.resize(static_cast<std::size_t>(in.gcount()));
+  return is != text;
+}
+
 }  // namespace
 
 Result<std::vector<SampleFile>> SampleFiles() {
@@ -184,9 +194,16 @@ Result<std::vector<SampleFile>> SampleFiles() {
                                  {"camera.json", DemoCameraFile()}};
 }
 
-Result<void> WriteSampleFiles(const std::string& folder) {
+Result<void> WriteSampleFiles(const std::string& folder, bool replace) {
   const auto files = SampleFiles();
   if (!files) return files.error();
+  for (const SampleFile& file : *files) {
+    const std::string path = folder + "/" + file.name;
+    if (!replace && HasOtherContent(path, file.text)) {
+      return Failure(path + " is there already, with other content: nothing was written; name " +
+                     "another folder, or replace it with --force");
+    }
+  }
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {

@@ -20,7 +20,8 @@ struct SampleFile {
 /// simulated camera (camera.json). The same on every call.
 Result<std::vector<SampleFile>> SampleFiles();
 
-/// Writes them into a folder, which it creates; files of the same names are replaced.
-Result<void> WriteSampleFiles(const std::string& folder);
+/// Writes them into a folder, which it creates. A file of the same name and other content is
+/// somebody's own: with `replace` it is replaced, else it is an error and nothing is written.
+Result<void> WriteSampleFiles(const std::string& folder, bool replace);
 
 }  // namespace footing::stream_client

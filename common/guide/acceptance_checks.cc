@@ -66,7 +66,7 @@ void Acceptance::CheckDevice(const DeviceRecord& device, std::vector<Check>& che
   checks.push_back({"battery " + serial, !device.battery_low, last.battery_fraction, 0, "",
                     device.battery_low          ? "battery low: change the batteries now"
                     : last.battery_fraction < 0 ? "the device reports no level"
-                                                : "share that is left"});
+                                                : "share of the charge"});
   const bool clock_known = last.clock_offset_sd_ms >= 0;
   checks.push_back(AtMost("clock " + serial, last.clock_offset_sd_ms, kClockSdMs, "ms",
                           clock_known ? "standard deviation of the sampling times"
@@ -95,10 +95,10 @@ void Acceptance::CheckFeatures(std::vector<Check>& checks) const {
     const double phase_rad = text::Median(sizes);
     if (phase == Phase::kStill) {
       checks.push_back(
-          AtMost("still", moving(record), kStillShare, "", "share of frames that see motion"));
+          AtMost("still", moving(record), kStillShare, "", "share of frames with motion"));
     } else if (phase == Phase::kWalk) {
       checks.push_back(
-          AtLeast("walk", moving(record), kMovingShare, "", "share of frames that see motion"));
+          AtLeast("walk", moving(record), kMovingShare, "", "share of frames with motion"));
       checks.push_back(AtLeast("walk cadence", frequency_hz, kWalkLeastHz, "Hz", "median"));
       if (!sizes.empty()) {
         checks.push_back(AtLeast("walk phase", phase_rad, kInTurnsRad, "rad",
@@ -108,7 +108,7 @@ void Acceptance::CheckFeatures(std::vector<Check>& checks) const {
       checks.push_back(AtLeast("run cadence", frequency_hz, kRunLeastHz, "Hz", "median"));
     } else if (phase == Phase::kJump) {
       checks.push_back(
-          AtLeast("jump", moving(record), kMovingShare, "", "share of frames that see motion"));
+          AtLeast("jump", moving(record), kMovingShare, "", "share of frames with motion"));
       if (!sizes.empty()) {
         checks.push_back(AtMost("jump phase", phase_rad, kTogetherRad, "rad",
                                 "left and right together: near 0"));

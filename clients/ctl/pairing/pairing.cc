@@ -53,12 +53,12 @@ std::vector<Step> NintendoSteps(Kind kind, const Host& host) {
   steps.push_back(
       {std::string(text.button) +
            ". Press it once; four lamps blink for 20 s. Only this button makes a bond, so "
-           "that the device comes back by itself; with 1+2 held it is lost again at the "
-           "next switch-off.",
+           "that the device comes back by itself; if you hold 1+2 instead, it is "
+           "forgotten when it is switched off.",
        "", std::string("[NEW] Device ADDRESS ") + text.name});
   steps.push_back(
       {"Pair while it blinks. Do not type a PIN: BlueZ supplies it (the adapter's own "
-       "address, backwards). If it asks for one press the red button again and repeat.",
+       "address, backwards). If it asks for one, press the red button again and repeat.",
        "pair ADDRESS", "Pairing successful"});
   steps.push_back(
       {"Connect at once: only then the device keeps the bond. And trust it, so that it may "

@@ -61,8 +61,8 @@ Result<void> SessionRun::Consent() {
   };
   if (context_.options.unattended)
     return note("no person takes part: " + context_.protocol.consent);
-  const auto answer = context_.console.Ask(context_.protocol.consent +
-                                           "\nType yes to confirm, else the session ends:");
+  const auto answer = context_.console.Ask(
+      context_.protocol.consent + "\nType yes to confirm; anything else ends the session:");
   if (!answer) return answer.error();
   if (*answer != "yes") return Failure("without consent the session ends here");
   return note("confirmed: " + context_.protocol.consent);

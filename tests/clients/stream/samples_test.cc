@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "clients/stream/table.h"
 #include "common/virtual/motion/bvh.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::stream_client {
 namespace {
@@ -78,8 +80,25 @@ TEST_F(Samples, StudyTablesHaveFifteenSubjectsWithFourInterfaces) {
   EXPECT_EQ(Text("failures.csv").find('.'), std::string::npos);
 }
 
+TEST_F(Samples, FilesOfSomebodyElseStay) {
+  const test::TemporaryFolder folder;
+  const std::string own = folder.Path("p07.json");
+  ASSERT_TRUE(WriteSampleFiles(folder.Path(""), false));
+  ASSERT_TRUE(WriteSampleFiles(folder.Path(""), false));  // The same files may be there.
+  std::filesystem::remove(folder.Path("clip.bvh"));
+  std::ofstream(own) << "{\"code\": \"p07\", \"height_m\": 1.81}\n";
+  const auto refused = WriteSampleFiles(folder.Path(""), false);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("p07.json"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("clip.bvh")));  // Nothing was written.
+  ASSERT_TRUE(WriteSampleFiles(folder.Path(""), true));
+  std::ostringstream text;
+  text << std::ifstream(own).rdbuf();
+  EXPECT_EQ(text.str(), Text("p07.json"));
+}
+
 TEST_F(Samples, AFolderThatCannotBeMadeIsNamed) {
-  const auto written = WriteSampleFiles("/proc/nowhere");
+  const auto written = WriteSampleFiles("/proc/nowhere", false);
   ASSERT_FALSE(written);
   EXPECT_NE(written.error().message.find("/proc/nowhere"), std::string::npos);
 }
