@@ -32,6 +32,9 @@ struct RangesOptions {
 
 Result<void> Check(const RangesOptions& options) {
   const std::string& interface = options.played.interface;
+  if (interface.empty()) {
+    return UsageError("name the interface: --interface wrist, arm, leg, joystick or boards");
+  }
   if (stream::UserInterfaceNamed(interface) == stream::UserInterface::kUnspecified) {
     return UsageError("ranges are measured of wrist, arm, leg, joystick and boards, not of \"" +
                       interface + "\"");

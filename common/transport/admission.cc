@@ -43,7 +43,8 @@ std::string HowToGetMore(const ServerOptions& options, const Caller& caller) {
   return std::string(
              "connect over the server's Unix socket as its user (admin) or as a member of its "
              "group (control)") +
-         (options.token.empty() ? "" : ", or over TCP with the server's token (control)");
+         (options.token.empty() ? ", or give the server a token_file, and the client its token"
+                                : ", or over TCP with the server's token (control)");
 }
 
 /// The highest role of the caller, or why it may not come in.
@@ -71,6 +72,11 @@ std::variant<v1::Role, NotAdmitted> Authenticate(const ServerOptions& options,
 /// Another minor version is fine: both sides leave out what they do not know.
 std::optional<NotAdmitted> CheckVersion(const ServerOptions& options, const v1::Hello& hello) {
   if (hello.protocol_major() == kProtocolMajor) return std::nullopt;
+  if (hello.protocol_major() == 0) {
+    return Without(v1::Refused::REASON_PROTOCOL_VERSION,
+                   "Hello has no protocol_major: send " + std::to_string(kProtocolMajor) +
+                       " for protocol " + VersionText(kProtocolMajor, kProtocolMinor));
+  }
   const bool client_older = hello.protocol_major() < kProtocolMajor;
   return Without(v1::Refused::REASON_PROTOCOL_VERSION,
                  options.server_id + " speaks protocol " +
@@ -83,6 +89,11 @@ std::optional<NotAdmitted> CheckRole(const ServerOptions& options, const Caller&
                                      v1::Role wished, v1::Role highest) {
   // An enum of the protocol may have any number, a negative one as well.
   if (wished >= v1::ROLE_VIEW && wished <= highest) return std::nullopt;
+  if (!v1::Role_IsValid(wished)) {
+    return Without(v1::Refused::REASON_ROLE,
+                   "Hello has the unknown role " + std::to_string(wished) +
+                       "; there are 1 (view), 2 (log), 3 (control) and 4 (admin)");
+  }
   return Without(v1::Refused::REASON_ROLE,
                  "the role " + RoleName(wished) + " is not given to this connection, at most " +
                      RoleName(highest) + "; " + HowToGetMore(options, caller));

@@ -26,8 +26,11 @@ stream::DeviceRole RoleOf(v1::DeviceRole role) {
 }  // namespace
 
 std::string WhatIsWrong(const v1::DeviceAttach& attach) {
-  if (!stream::IsKnownDevice(attach.vendor(), attach.product()))
-    return "vendor and product are unknown";
+  if (!stream::IsKnownDevice(attach.vendor(), attach.product())) {
+    return "vendor " + std::to_string(attach.vendor()) + " and product " +
+           std::to_string(attach.product()) +
+           " are unknown; the protocol lists those of all devices";
+  }
   if (attach.serial().empty()) return "serial is empty";
   if (!IsPlainText(attach.serial()) || !IsPlainText(attach.name()) || !IsPlainText(attach.rig())) {
     return "serial, name or rig is not short printable text";

@@ -51,6 +51,17 @@ TEST_F(ServerHandshakeTest, AnotherMajorVersionIsRefusedWithBothVersions) {
             "test-server speaks protocol 1.0, this client 2.7; update the server");
 }
 
+TEST_F(ServerHandshakeTest, WhatAHelloLacksIsNamed) {
+  StartServer();
+  v1::Envelope hello = Hello();
+  hello.mutable_hello()->clear_protocol_major();
+  EXPECT_EQ(RefusalOf(hello).message(), "Hello has no protocol_major: send 1 for protocol 1.0");
+  const v1::Refused refused = RefusalOf(Hello(static_cast<v1::Role>(9)), 1);
+  EXPECT_EQ(refused.reason(), v1::Refused::REASON_ROLE);
+  EXPECT_EQ(refused.message(),
+            "Hello has the unknown role 9; there are 1 (view), 2 (log), 3 (control) and 4 (admin)");
+}
+
 TEST_F(ServerHandshakeTest, AnotherMinorVersionIsWelcome) {
   StartServer();
   const auto client = Connect();
@@ -67,6 +78,7 @@ TEST_F(ServerHandshakeTest, ControlOverTcpIsRefusedWithTheWayToGetIt) {
   const v1::Refused refused = RefusalOf(Hello(v1::ROLE_CONTROL), 1);
   EXPECT_EQ(refused.reason(), v1::Refused::REASON_ROLE);
   EXPECT_NE(refused.message().find("Unix socket"), std::string::npos) << refused.message();
+  EXPECT_NE(refused.message().find("token_file"), std::string::npos) << refused.message();
 }
 
 TEST_F(ServerHandshakeTest, TheSameUserIsAdminOnTheUnixSocket) {
