@@ -128,7 +128,7 @@ void GaussNewton::Linearise(const PoseTargets& targets) {
 }
 
 void GaussNewton::DescendFromLikely(const PoseTargets& targets, const Eigen::VectorXd& likely_q) {
-  // Both starts are judged without what ties them to the last frame.
+  // Both starts are compared without what ties them to the last frame.
   const double smooth = std::exchange(smooth_, 0);
   centre_ = likely_q;
   const double cost = Cost();
