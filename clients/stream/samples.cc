@@ -11,6 +11,7 @@
 
 #include "clients/stream/rendered_hands.h"
 #include "clients/stream/script.h"
+#include "common/config/data_file.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/choreography/course.h"
@@ -164,11 +165,8 @@ std::string SampleStudy(const SampleMeasure& measure, std::uint64_t seed) {
 bool HasOtherContent(const std::string& path, const std::string& text) {
   std::error_code none;
   if (!std::filesystem::exists(path, none)) return false;
-  std::ifstream in(path, std::ios::binary);
-  std::string is(text.size() + 1, '\0');
-  in.read(is.data(), static_cast<std::streamsize>(is.size()));
-  is.resize(static_cast<std::size_t>(in.gcount()));
-  return is != text;
+  const auto is = config::ReadTextFile(path);
+  return !is || *is != text;
 }
 
 }  // namespace

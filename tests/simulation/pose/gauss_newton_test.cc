@@ -91,7 +91,7 @@ TEST(GaussNewton, LeavesAMinimumThatIsFarFromTheLikelyPose) {
   const PoseBasis basis = FitBasis(poses, {});
   const Eigen::VectorXd truth = world.poses.col(7);
   const PoseTargets targets = world.Targets(truth, 0.01);
-  Eigen::VectorXd turned = truth;  // By a whole turn, which no target can tell from the truth.
+  Eigen::VectorXd turned = truth;  // By a whole turn, which moves no joint.
   turned(pitch) += 2 * kPi;
   GaussNewton solver(world.person, basis, {});
   solver.ContinueFrom(turned);
@@ -114,7 +114,7 @@ TEST(GaussNewton, StaysInAMinimumThatIsNoWorse) {
   EXPECT_LT((solver.q() - settled).norm(), 0.1);
   EXPECT_NEAR(solver.JointSd(targets.points[0].joint), settled_m, 4e-4);
   body::ComputeKinematics(world.person.skeleton, solver.q(), world.at);
-  EXPECT_EQ(solver.at().p_WJ, world.at.p_WJ);  // It tells where it has brought the joints.
+  EXPECT_EQ(solver.at().p_WJ, world.at.p_WJ);  // The joints are those of the pose.
 }
 
 TEST(GaussNewton, MovesAsItsPriorsMeanMoves) {
