@@ -55,8 +55,8 @@ class Calibrating {
       return NoDevice("no footingd: " + lights_.link() +
                       "; start it, or name its address with --sensor");
     return NoDevice(
-        "footingd has no PS Move with a role: connect one, then give it a role (footing-ctl "
-        "assign)");
+        "footingd has no PS Move with the role left_hand, right_hand or head: connect one, then "
+        "give it one of them (footing-ctl assign)");
   }
 
   void OnDevices() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/frames/camera_file.h"
 #include "common/wire/wire.h"
 
 namespace footing::camera {
@@ -38,7 +39,7 @@ void Lights::OnTick(const v1::Tick& tick) {
   for (const v1::DeviceStatus& one : tick.status().devices()) {
     stream::DeviceStatus device = wire::FromProto(one);
     if (device.kind == stream::DeviceKind::kPsMove && device.state != stream::DeviceState::kLost &&
-        device.role != stream::DeviceRole::kUnspecified)
+        frames::CanHoldSphere(device.role))
       moves_.push_back(std::move(device));
   }
   std::stable_sort(moves_.begin(), moves_.end(),

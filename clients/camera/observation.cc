@@ -41,7 +41,10 @@ std::vector<stream::HandFrame> ToHandFrames(
     frame.tracker_pose =
         stream::TrackerPose{X_WC.translation(), Eigen::Quaterniond(X_WC.rotation())};
     stream::TrackedPoint point = found[i] ? ToPoint(X_WC, *found[i]) : stream::TrackedPoint();
-    point.role = camera.spheres[i].role;
+    if (camera.spheres[i].role == stream::DeviceRole::kHead)
+      point.joint = stream::BodyJoint::kHead;
+    else
+      point.role = camera.spheres[i].role;
     frame.points.push_back(point);
     const double row_s = found[i] ? camera.RowTime(found[i]->centre_px.y()) : 0;
     const auto row_ns = static_cast<std::int64_t>(std::llround(1e9 * row_s));

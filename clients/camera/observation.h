@@ -15,7 +15,7 @@ namespace footing::camera {
 /// estimate; of a sphere that was not found it has confidence 0. `age_ns` is from the mid-exposure
 /// of the row on which the sphere appears to `now_ns`; `exposed_ns` is that of the middle row,
 /// which counts for a sphere that was not found. Without X_WC points are in the camera's own frame,
-/// and tracker_pose is the identity.
+/// and tracker_pose is the identity. A sphere of the head is the joint of that name.
 std::vector<stream::HandFrame> ToHandFrames(
     const frames::CameraFile& camera, const std::optional<Eigen::Isometry3d>& calibrated_X_WC,
     const std::vector<std::optional<sphere::Estimate>>& found, std::int64_t exposed_ns,

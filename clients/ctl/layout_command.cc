@@ -66,7 +66,10 @@ Result<void> Layout(Session& session, const LayoutArguments& arguments, const Sh
     const auto results =
         RunGuided(session, options, {guide::Item::kLayout}, PromptOptions{arguments.script});
     if (!results) return results.error();
-    if (results->empty()) return NoDevice("rig " + arguments.rig + " has no board");
+    if (results->empty()) {
+      return NoDevice("rig " + arguments.rig + " has no board" +
+                      (arguments.preset.empty() ? "" : ": its layout is set, but not checked"));
+    }
     out["check"] = ToJson(results->back());
     text += "\n" + ToText(results->back());
     if (!results->back().passed) verdict = Failure(results->back().note);

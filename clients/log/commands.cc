@@ -164,6 +164,8 @@ Result<ordered_json> RunRepair(const std::string& in, const std::string& out, bo
       {"metadata_kept", report->metadata},
       {"damaged_chunks_lost", found.damaged_chunks},
       {"damaged_records_lost", found.damaged_records},
+      {"skipped_bytes", found.skipped_bytes},
+      {"missing_ticks", report->missing_ticks},
       {"bytes_behind_last_complete_record", report->input_bytes - found.end_offset}};
 }
 

@@ -18,14 +18,15 @@ namespace {
 constexpr const char* kReadme =
     "Motion and events of recordings, written by footing-log.\n"
     "\n"
-    "Each recording is a task of a subject. The tracking system body is the reconstructed person: "
-    "a\n"
-    "place and an orientation of each joint; sim is a simulated character (gaits: 1 step, 2 walk,\n"
-    "3 run, 4 jump). Both have x forward, y left, z up, right-handed. Every other tracking system\n"
-    "is a device, in its own frame (x left, y front, z down), named by where it was worn. The\n"
-    "channel latency has the time of each sample from the start of the recording; all systems of "
-    "a\n"
-    "recording share it, and so do the events.\n";
+    "Each recording is a task of a subject. The tracking system body is the reconstructed person:\n"
+    "a place and an orientation of each joint; sim is a simulated character (gaits: 1 step, 2 "
+    "walk,\n"
+    "3 run, 4 jump). Hands whose names end in tracked were seen by a tracker. All of these have x\n"
+    "forward, y left, z up, right-handed. Every other tracking system is a device, in its own "
+    "frame\n"
+    "(x left, y front, z down), named by where it was worn. The channel latency has the time of\n"
+    "each sample from the start of the recording; all systems of a recording share it, and so do\n"
+    "the events.\n";
 
 class DataSet {
  public:

@@ -173,9 +173,9 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
       Result<recording::OutputFile> out = recording::OutputFile::Create(path, replace);
       if (!out) return out.error();
       if (const auto written = out->Write(one.text); !written) return written.error();
-      exported.push_back({path, gatherer.subject(), static_cast<std::uint64_t>(motion->frames()),
-                          motion->rate_hz,
-                          1e-9 * static_cast<double>(gatherer.begin_ns() - walker.first_ns())});
+      exported.push_back(
+          {path, gatherer.subject(), static_cast<std::uint64_t>(motion->frames()), motion->rate_hz,
+           1e-9 * static_cast<double>(gatherer.begin_ns() - walker.first_ns()) - gatherer.lag_s()});
     }
   }
   return exported;

@@ -11,6 +11,7 @@ namespace footing::log_client {
 namespace {
 
 constexpr double kMostRateHz = 1000;
+constexpr double kMostLagS = 10;
 constexpr double kMostRowsPerFrame = 100;  // What is missing between frames is filled.
 
 Eigen::Vector3d PlaceOf(const v1::Character& character, int link) {
@@ -70,8 +71,17 @@ void MotionGatherer::Add(const v1::CharacterFrame& frame, std::uint64_t log_time
   if (!character.has_body() || !character.body().calibrated()) return;
   if (character.links_size() != skeleton_.links_size()) return;
   subject_ = character.body().subject();
+  // The frame that completes the T-pose has no estimate yet.
+  if (frames_.size() == 1 && !frames_[0].characters(0).valid() && character.valid()) {
+    frames_.clear();
+  }
   if (frames_.empty()) begin_ns_ = log_time_ns;
   frames_.push_back(frame);
+}
+
+double MotionGatherer::lag_s() const {
+  const double lag_s = frames_.empty() ? 0 : frames_.front().characters(0).body().lag_s();
+  return lag_s > 0 && lag_s < kMostLagS ? lag_s : 0;
 }
 
 Result<MotionGatherer::Grid> MotionGatherer::MakeGrid() const {
@@ -124,8 +134,11 @@ Result<std::vector<FootForces>> MotionGatherer::Forces() const {
   const auto grid = MakeGrid();
   if (!grid) return grid.error();
   std::vector<FootForces> forces(grid->frames.size());
+  const auto lag = static_cast<std::size_t>(std::llround(lag_s() / grid->step_s));
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    const v1::BodyState& body = frames_[grid->frames[i]].characters(0).body();
+    // A frame has the newest loads, and the pose of a lag before them.
+    const std::size_t then = i < lag ? 0 : i - lag;
+    const v1::BodyState& body = frames_[grid->frames[then]].characters(0).body();
     for (int side = 0; side < std::min(2, body.feet_size()); ++side) {
       const v1::BodyFoot& foot = body.feet(side);
       if (!foot.cop_valid() || !(foot.load_n() > 0)) continue;

@@ -24,11 +24,13 @@ class MotionGatherer {
   /// Nothing where no frame was taken. InvalidData where frames and skeleton do not fit, or time
   /// does not go on.
   Result<motion::Motion> Finish() const;
-  /// The loads of the feet in the frames of Finish(); where the centre of pressure of a foot is not
-  /// known it has none.
+  /// The loads of the feet at the instants of the poses of Finish(); where the centre of pressure
+  /// of a foot is not known it has none.
   Result<std::vector<FootForces>> Forces() const;
   bool empty() const { return frames_.empty(); }
   const std::string& subject() const { return subject_; }
+  /// How much older than its frame a pose is.
+  double lag_s() const;
   /// Log time of the first frame taken.
   std::uint64_t begin_ns() const { return begin_ns_; }
 

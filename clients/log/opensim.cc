@@ -199,7 +199,9 @@ Result<motion::Table> JointAngles(const motion::Motion& motion) {
         }
       }
       if (all[i].parent != kGround) continue;
-      const Vector3d& p_W = at.p_WJ[static_cast<std::size_t>(segments[kPelvis].joint)];
+      const Vector3d p_W =
+          0.5 * (at.p_WJ[static_cast<std::size_t>((*landmarks)[body::Landmark::kLeftHip])] +
+                 at.p_WJ[static_cast<std::size_t>((*landmarks)[body::Landmark::kRightHip])]);
       put(p_W.x());
       put(p_W.z());
       put(-p_W.y());

@@ -125,7 +125,9 @@ void AddPublishCommand(CLI::App& app, Shared& shared) {
                                          {"missing", report->missing},
                                          {"published", report->published},
                                          {"dropped", report->dropped}};
-    if (shared.json) std::cout << json.dump() << std::endl;
+    if (shared.json)
+      std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                << std::endl;
   });
 }
 

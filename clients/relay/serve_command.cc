@@ -133,7 +133,9 @@ void AddServeCommand(CLI::App& app, Shared& shared) {
                                          {"left_out", report->left_out},
                                          {"dropped", report->dropped},
                                          {"accepted", report->accepted}};
-    if (shared.json) std::cout << json.dump() << std::endl;
+    if (shared.json)
+      std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                << std::endl;
   });
 }
 

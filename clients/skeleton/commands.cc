@@ -61,7 +61,11 @@ struct DialectFlags {
 int Receive(const ReceiverOptions& options, bool json) {
   const auto done = RunReceiver(options);
   if (!done) return cli::Report(done.error());
-  std::cout << (json ? done->statistics.dump() + "\n" : ToText(done->statistics)) << std::flush;
+  std::cout << (json ? done->statistics.dump(-1, ' ', false,
+                                             nlohmann::ordered_json::error_handler_t::replace) +
+                           "\n"
+                     : ToText(done->statistics))
+            << std::flush;
   return done->published ? 0 : cli::Report(done->published.error());
 }
 

@@ -89,6 +89,9 @@ Result<void> CheckHands(const BoardsOptions& options) {
     return UsageError("--hands " + hands +
                       " is unknown; must be one of: none, move, wiimote, straps, kinect, camera");
   }
+  if (options.head != "none" && options.head != "sphere") {
+    return UsageError("--head " + options.head + " is unknown; must be none or sphere");
+  }
   if (options.moves && hands != "camera") {
     return UsageError("--moves needs --hands camera: their lights are for a camera");
   }
@@ -177,6 +180,9 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
   AddWiimotes(stage, options.hands, common, *link, plan);
   if (options.moves) AddMoves(stage, common, *link, plan);
   AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
+  if (options.head == "sphere") {
+    plan.feeds.push_back(HeadFeed(stage, options.hand_noise_m, DeviceSeed(common, 4) + 700));
+  }
   if (options.hands == "camera") {
     auto frames = RenderedHandsFeed(stage, options.camera_file, options.frames_to,
                                     DeviceSeed(common, 3) + 700);

@@ -15,7 +15,8 @@ struct BoardsOptions {
   StageOptions stage;
   std::string hands = "none";          ///< none, move, wiimote, straps, kinect or camera.
   std::string camera_file, frames_to;  ///< Of hands "camera": the simulated camera, and a FIFO.
-  bool moves = false;  ///< With hands "camera": PS Moves in the fists light the spheres.
+  bool moves = false;         ///< With hands "camera": PS Moves in the fists light the spheres.
+  std::string head = "none";  ///< none, or sphere: one on a cap, as a tracker sees it.
   /// A hand that is lost for a while: its Wiimote out of reach, or not seen.
   std::string lost_hand;  ///< left or right; empty: none is.
   double lost_from_s = 0, lost_for_s = 0;

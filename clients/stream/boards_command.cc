@@ -33,6 +33,8 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
   AddMotion(*boards, options.stage);
   boards->add_option("--hands", options.hands,
                      "Hand devices: none, move, wiimote, straps, kinect or camera");
+  boards->add_option("--head", options.head,
+                     "Head tracker: none, or sphere for one on a cap (default none)");
   boards->add_option("--camera", options.camera_file,
                      "With --hands camera: camera file of the simulated camera");
   boards->add_option("--frames-to", options.frames_to,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "common/clock/clock.h"
@@ -28,6 +29,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         link_(io, {.to = options_.to,
                    .on_open = [this] { OnOpen(); },
                    .on_message = [this](const v1::DeviceEnvelope& message) { OnMessage(message); },
+                   .on_refused = [this](const auto& message) { refused_.insert(message.slot()); },
                    .on_close = [this] { StopClocks(); }}) {
     sequences_.assign(devices_.size(), 0);
     // One for each, and one for the end.
@@ -45,10 +47,12 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   }
 
   bool has_attached() const { return has_attached_; }
+  bool all_refused() const { return !devices_.empty() && refused_.size() >= devices_.size(); }
 
  private:
   void OnOpen() {
     has_attached_ = true;
+    refused_.clear();
     const std::string what = devices_.empty()
                                  ? std::to_string(fresh_sources_.size()) + " simulated sources"
                                  : std::to_string(devices_.size()) + " simulated devices";
@@ -244,6 +248,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   std::vector<std::unique_ptr<timer::Timer>> clocks_;
   timer::TimePoint start_;
   std::vector<std::uint64_t> sequences_;
+  std::set<std::uint32_t> refused_;  ///< Slots, on the present connection.
   device_link::DeviceLink link_;
   std::int64_t start_ns_ = 0;
   bool has_attached_ = false;
@@ -260,6 +265,7 @@ Dialer::~Dialer() = default;
 
 void Dialer::Start() { implementation_->Dial(); }
 bool Dialer::has_attached() const { return implementation_->has_attached(); }
+bool Dialer::all_refused() const { return implementation_->all_refused(); }
 void Dialer::Stop(const std::string& reason) { implementation_->Stop(reason); }
 
 }  // namespace footing::stream_client

@@ -33,6 +33,8 @@ class Dialer {
   void Stop(const std::string& reason);
   /// Whether footingd has been there at any time.
   bool has_attached() const;
+  /// Whether footingd has refused every device, on the present or the last connection.
+  bool all_refused() const;
 
  private:
   class Implementation;

@@ -7,6 +7,7 @@
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
 #include "common/body/points.h"
+#include "common/body/skeleton_points.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/kinect_skeleton.h"
 
@@ -16,6 +17,7 @@ namespace {
 constexpr double kTruthRateHz = 60;
 constexpr std::size_t kMostJoints = 64;  // Of a reference frame.
 constexpr double kLeastSdM = 0.001;      // Nobody's tracker is exact.
+constexpr double kCapM = 0.12;           // A sphere on a cap, above the middle of the head.
 
 /// The body's pose between two frames.
 Eigen::VectorXd PoseAt(const Stage& stage, double t_s) {
@@ -49,6 +51,16 @@ Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s) {
   return body::Place(body::Fist(stage.scene.body, side), KinematicsAt(stage, t_s));
 }
 
+Eigen::Vector3d CapAt(const Stage& stage, double t_s) {
+  const body::Body& body = stage.scene.body;
+  body::Point sphere = body::SkeletonPoints(body)[body::IndexOf(stream::BodyJoint::kHead)];
+  body::Kinematics upright(body.skeleton);
+  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), upright);
+  sphere.p_J_m += upright.R_WJ[static_cast<std::size_t>(sphere.joint)].transpose() *
+                  Eigen::Vector3d(0, 0, kCapM);
+  return body::Place(sphere, KinematicsAt(stage, t_s));
+}
+
 namespace {
 
 /// Both fists where they are.
@@ -77,6 +89,24 @@ Feed HandFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t 
     stream::HandFrame frame = Fists(*stage, "move", std::max(noise_m, kLeastSdM), t_s);
     for (stream::TrackedPoint& point : frame.points)
       for (double& value : point.position_m) value += noise_m * random.Normal();
+    return frame;
+  };
+  return feed;
+}
+
+Feed HeadFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
+  Feed feed;
+  feed.rate_hz = kTruthRateHz;
+  feed.hands = [stage, noise_m, random = noise::Random(seed)](double t_s) mutable {
+    stream::HandFrame frame;
+    frame.tracker = "cap";
+    frame.simulated = true;
+    stream::TrackedPoint& point = frame.points.emplace_back();
+    point.joint = stream::BodyJoint::kHead;
+    point.position_m = CapAt(*stage, t_s);
+    for (double& value : point.position_m) value += noise_m * random.Normal();
+    point.sd_m.setConstant(std::max(noise_m, kLeastSdM));
+    point.confidence = 1;
     return frame;
   };
   return feed;

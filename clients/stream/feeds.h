@@ -17,12 +17,18 @@ Feed HandFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t 
 /// hidden.
 Feed KinectFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed);
 
+/// The sphere of a cap as a tracker with white noise that shows nothing else of a skeleton sees it.
+Feed HeadFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed);
+
 /// The true pose 60 times a second: all joints, or of a skeleton of more than 64 those on the way
 /// to a landmark.
 Feed PoseFeed(std::shared_ptr<const Stage> stage);
 
 /// The middle of the fist of side 0 (left) or 1, in W.
 Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s);
+
+/// The sphere of a cap, 12 cm above the middle of the head, in W.
+Eigen::Vector3d CapAt(const Stage& stage, double t_s);
 
 /// Ends a plan of what is under the feet: the fists where `hands` is "move" or "kinect", the true
 /// pose, and how long it takes.

@@ -63,6 +63,9 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
   });
   dialer->Start();
   timer::Run(io);
+  if (came_in_time && dialer->all_refused()) {
+    return cli::Report(Failure("footingd refused every device; its reasons are above"));
+  }
   if (came_in_time) return 0;
   return cli::Report(device_link::NoFootingd(*to));
 }
@@ -115,6 +118,7 @@ constexpr char kExamples[] =
     "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
     "  footing-stream corners --left corners.csv --link poor --seconds 60\n"
     "  footing-stream boards --motion demo --hands move\n"
+    "  footing-stream boards --motion demo --hands move --head sphere\n"
     "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
     "--lose-from-s 12 --lose-for-s 2\n"
     "  footing-stream boards --motion clip.bvh --place-boards\n"

@@ -108,22 +108,28 @@ Eigen::Vector3d ShownColour(std::uint32_t rgb) {
   return Eigen::Vector3d(16, 15, 17) + sensor_dn * light / 255;
 }
 
-/// A sphere where the fist is when the row on which it appears is exposed. It rests meanwhile: at
+/// Where the body has the sphere of that role, in W.
+Eigen::Vector3d SphereAt(const Stage& stage, stream::DeviceRole role, double t_s) {
+  if (role == stream::DeviceRole::kHead) return CapAt(stage, t_s);
+  return FistAt(stage, role == stream::DeviceRole::kLeftHand ? 0 : 1, t_s);
+}
+
+/// A sphere where it is when the row on which it appears is exposed. It rests meanwhile: at
 /// the exposure of 1 ms that is meant here, a hand moves by a millimetre.
-virtual_camera::Ball BallInFist(const Stage& stage, const frames::CameraFile& camera,
-                                const virtual_camera::Scene& scene, std::size_t sphere,
-                                const SphereLights& lights, double t_s) {
-  const int side = camera.spheres[sphere].role == stream::DeviceRole::kLeftHand ? 0 : 1;
+virtual_camera::Ball BallOn(const Stage& stage, const frames::CameraFile& camera,
+                            const virtual_camera::Scene& scene, std::size_t sphere,
+                            const SphereLights& lights, double t_s) {
+  const stream::DeviceRole role = camera.spheres[sphere].role;
   const Eigen::Isometry3d X_CW = camera.X_WC->inverse();
   virtual_camera::Ball ball;
-  const auto light = lights.find(camera.spheres[sphere].role);
+  const auto light = lights.find(role);
   ball.colour_dn =
       light == lights.end() ? camera.spheres[sphere].target.colour_dn : ShownColour(light->second);
   ball.radius_m = camera.spheres[sphere].target.radius_m;
-  ball.p_C_m = X_CW * FistAt(stage, side, t_s);
+  ball.p_C_m = X_CW * SphereAt(stage, role, t_s);
   if (ball.p_C_m.z() <= 0.1) return ball;  // Behind the camera: not drawn.
   const double row_px = virtual_camera::Project(scene.lens, ball.p_C_m).y();
-  ball.p_C_m = X_CW * FistAt(stage, side, t_s + virtual_camera::RowTime(scene, row_px));
+  ball.p_C_m = X_CW * SphereAt(stage, role, t_s + virtual_camera::RowTime(scene, row_px));
   return ball;
 }
 
@@ -134,9 +140,6 @@ Result<frames::CameraFile> ReadPlacedCamera(const std::string& path) {
     return InvalidData(path + " does not say where the camera is (position_W_m, rotation_WC)");
   if (camera->format != sphere::PixelFormat::kSgrbg8)
     return InvalidData(path + ", key format: frames are rendered in SGRBG8 only");
-  for (const frames::HeldSphere& held : camera->spheres)
-    if (held.role != stream::DeviceRole::kLeftHand && held.role != stream::DeviceRole::kRightHand)
-      return InvalidData(path + ": the simulated body holds spheres in left_hand and right_hand");
   return camera;
 }
 
@@ -164,7 +167,7 @@ Result<Feed> RenderedHandsFeed(std::shared_ptr<const Stage> stage, const std::st
     scene.sensor.read_noise_dn = camera->settings.noise.read_dn;
     scene.sensor.dn_per_electron = camera->settings.noise.dn_per_electron;
     for (std::size_t i = 0; i < camera->spheres.size(); ++i)
-      scene.balls.push_back(BallInFist(*stage, *camera, scene, i, lights, t_s));
+      scene.balls.push_back(BallOn(*stage, *camera, scene, i, lights, t_s));
     renderer->Take(scene, exposed_ns);
   };
   return feed;

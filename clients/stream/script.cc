@@ -3,6 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "common/text/json_text.h"
 #include "common/units/units.h"
 
 namespace footing::stream_client {
@@ -103,7 +104,9 @@ Result<std::vector<Segment>> ScriptNamed(const std::string& name) {
 }
 
 Result<std::vector<Segment>> ParseScript(const std::string& text, const std::string& origin) {
-  const auto json = nlohmann::json::parse(text, nullptr, false, true);
+  const auto read = text::ParseJson(text, origin);
+  if (!read) return read.error();
+  const auto& json = *read;
   if (!json.is_array() || json.empty()) {
     return InvalidData(origin + " must hold a JSON list of at least one stretch");
   }

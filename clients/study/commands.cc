@@ -94,6 +94,29 @@ Result<LoadedProtocol> Load(const std::string& path, const std::string& folder) 
                         folder.empty() ? journal::FolderOf(path) : folder, std::move(*tables)};
 }
 
+namespace {
+
+Error JournalLost(const std::string& path) {
+  return InvalidData(path +
+                     " has no event, but there are recordings beside it; restore it, or move "
+                     "the folder away");
+}
+
+Result<void> CheckRatings(const records::Records& records, const std::string& path) {
+  for (const records::Rating& one : records.ratings) {
+    const bool exertion = one.item == plan::kExertionItem;
+    const int least = exertion ? 0 : plan::kLeastRating;
+    const int most = exertion ? plan::kMostExertion : plan::kMostRating;
+    if (one.value >= least && one.value <= most) continue;
+    return InvalidData(path + ": " + one.item + " of " + one.interface + " is rated " +
+                       nlohmann::json(one.value).dump() + ", must be from " +
+                       std::to_string(least) + " to " + std::to_string(most));
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
   if (const auto done = journal::CheckProtocol(loaded.folder, loaded.text); !done) {
     return done.error();
@@ -108,13 +131,21 @@ Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
   std::vector<records::Records> people;
   for (const std::string& participant : loaded.protocol.participants) {
     const std::string path = journal::JournalPath(loaded.folder, participant);
-    if (!journal::Exists(path)) continue;
+    if (!journal::Exists(path)) {
+      if (journal::HasRecordings(loaded.folder, participant)) return JournalLost(path);
+      continue;
+    }
     const auto text = journal::ReadJournal(path);
     if (!text) return text.error();
     const auto own = journal::RequireParticipant(text->events, participant, path);
-    if (text->events.empty()) continue;  // It ended before its session began.
+    if (text->events.empty()) {
+      if (journal::HasRecordings(loaded.folder, participant)) return JournalLost(path);
+      continue;  // It ended before its session began.
+    }
     if (!own) return own.error();
-    people.push_back(records::Collect(text->events));
+    records::Records records = records::Collect(text->events);
+    if (const auto done = CheckRatings(records, path); !done) return done.error();
+    people.push_back(std::move(records));
   }
   if (!people.empty()) return people;
   return Failure(

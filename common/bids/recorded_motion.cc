@@ -19,6 +19,7 @@ class Reader {
   explicit Reader(const Choice& choice) : choice_(choice), devices_(choice.with_role) {}
 
   Result<RecordedMotion> Run(const recording::RecordedSession& session) {
+    path_ = session.path();
     if (choice_.trial.empty()) zero_wall_ns_ = FirstTick(session);
     for (const RecordedServer& server : session.servers()) {
       if (server.server_id != "footing-sim") continue;
@@ -56,6 +57,19 @@ class Reader {
             tick.characters().characters(0).trial().trial() == choice_.trial);
   }
 
+  /// The rows of a table are those of one person.
+  Result<void> CheckSubject(const Tick& tick) {
+    if (tick.characters().characters_size() == 0) return {};
+    const v1::Character& character = tick.characters().characters(0);
+    if (!character.has_body() || !character.body().calibrated()) return {};
+    const std::string& subject = character.body().subject();
+    if (!subject_) subject_ = subject;
+    if (*subject_ == subject) return {};
+    return InvalidData(path_ + ": the bodies of " + *subject_ + " and " + subject +
+                       " are in one recording, and a table of BIDS is of one person; record each "
+                       "person by themselves, or export bvh, trc, mot or c3d");
+  }
+
   Result<void> ReadSimulation(const RecordedServer& server) {
     const auto ticks = ReadTicks(server, {Tick::kSkeletonsFieldNumber, Tick::kCharactersFieldNumber,
                                           Tick::kEventsFieldNumber, Tick::kConfigFieldNumber});
@@ -71,7 +85,10 @@ class Reader {
         if (!of_server) return of_server.error();
         clock = *of_server;
       }
-      if (chosen) characters_.Add((*clock)(tick.host_ns()), tick);
+      if (chosen) {
+        if (const auto done = CheckSubject(tick); !done) return done;
+        characters_.Add((*clock)(tick.host_ns()), tick);
+      }
       AddEvents(tick, *clock, choice_.undone, motion_.events);
     }
     return {};
@@ -90,7 +107,9 @@ class Reader {
   }
 
   const Choice& choice_;
+  std::string path_;
   std::optional<std::int64_t> zero_wall_ns_;
+  std::optional<std::string> subject_;  ///< Of the bodies.
   CharacterTables characters_;
   DeviceTables devices_;
   RecordedMotion motion_;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
@@ -25,6 +26,32 @@ void HideEmptyDefaults(CLI::App& app) {
   }
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     HideEmptyDefaults(*command);
+  }
+}
+
+/// Every number has to be one: a range takes NaN, which compares with nothing, and -1 becomes the
+/// greatest number without a sign.
+void RefuseNoNumbers(CLI::App& app) {
+  const CLI::Validator finite(
+      [](std::string& text) {
+        double number = 0;
+        const bool is_number = CLI::detail::lexical_cast(text, number);
+        return is_number && !std::isfinite(number) ? text + " is not a finite number"
+                                                   : std::string();
+      },
+      "");
+  const CLI::Validator not_negative(
+      [](std::string& text) {
+        return text.starts_with('-') ? text + " is not a number from 0" : std::string();
+      },
+      "");
+  for (CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type.find("FLOAT") != std::string::npos) option->check(finite);
+    if (type.find("UINT") != std::string::npos) option->check(not_negative);
+  }
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    RefuseNoNumbers(*command);
   }
 }
 
@@ -130,6 +157,7 @@ std::unique_ptr<CLI::App> NewApp(const std::string& name, const std::string& wha
 std::optional<int> Parse(CLI::App& app, int argc, char** argv) {
   HideEmptyDefaults(app);
   NarrowExamples(app);
+  RefuseNoNumbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -78,7 +78,11 @@ class DeviceLink::Implementation : public std::enable_shared_from_this<Implement
   void OnFrame(std::string_view payload) {
     v1::DeviceEnvelope message;
     if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) return;
-    if (message.has_refused()) return log::Error("footingd: " + message.refused().reason());
+    if (message.has_refused()) {
+      log::Error("footingd: " + message.refused().reason());
+      if (options_.on_refused) options_.on_refused(message.refused());
+      return;
+    }
     if (options_.on_message) options_.on_message(message);
   }
 

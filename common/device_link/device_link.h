@@ -20,6 +20,9 @@ struct Options {
   std::size_t max_queued_frames = 1024;  ///< Messages that wait while footingd does not read.
   std::function<void()> on_open = {};    ///< After each connection is made.
   std::function<void(const v1::DeviceEnvelope& message)> on_message = {};
+  /// After each refusal, which the log has: of the device in its slot, or of the whole connection,
+  /// which then ends.
+  std::function<void(const v1::DeviceRefused& message)> on_refused = {};
   std::function<void()> on_close = {};  ///< After each connection is lost; not after Stop().
 };
 

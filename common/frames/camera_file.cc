@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/data_file.h"
+#include "common/text/json_text.h"
 
 namespace footing::frames {
 namespace {
@@ -102,8 +103,7 @@ Result<HeldSphere> ReadSphere(const json& object, const std::string& place) {
   Reader reader(object, place);
   const std::string role = reader.Text("role");
   sphere.role = stream::RoleNamed(role);
-  if (sphere.role == stream::DeviceRole::kUnspecified)
-    reader.Fail("role", "must be one of " + stream::RoleNames());
+  if (!CanHoldSphere(sphere.role)) reader.Fail("role", "must be left_hand, right_hand or head");
   const auto colour = reader.Numbers("colour_dn", 3, 0, 255);
   if (colour.empty()) {
     reader.Fail("colour_dn", "is needed");
@@ -183,8 +183,9 @@ void ReadPose(Reader& reader, CameraFile& camera) {
 }
 
 Result<CameraFile> Parse(const std::string& text, const std::string& origin, bool with_spheres) {
-  const json object = json::parse(text, nullptr, false, true);
-  if (object.is_discarded()) return InvalidData(origin + ": not JSON");
+  const auto read = text::ParseJson(text, origin);
+  if (!read) return read.error();
+  const auto& object = *read;
   CameraFile camera;
   Reader reader(object, origin);
   ReadLens(reader, camera.lens);

@@ -12,6 +12,12 @@
 
 namespace footing::frames {
 
+/// Hands and the head: what else a person moves is not followed by its sphere.
+constexpr bool CanHoldSphere(stream::DeviceRole role) {
+  return role == stream::DeviceRole::kLeftHand || role == stream::DeviceRole::kRightHand ||
+         role == stream::DeviceRole::kHead;
+}
+
 /// A sphere that is looked for, and whose hand holds it.
 struct HeldSphere {
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;

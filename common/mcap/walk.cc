@@ -2,9 +2,11 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 
-#include "common/mcap/crc.h"
+#include "common/mcap/checks.h"
 #include "common/mcap/decode.h"
+#include "common/mcap/resync.h"
 #include "common/mcap/summary.h"
 #include "common/result/result.h"
 
@@ -21,7 +23,7 @@ struct RawRecord {
 class Walker {
  public:
   Walker(std::string_view file, const Visitor& visitor, WalkMode mode)
-      : file_(file), visitor_(visitor), mode_(mode) {}
+      : file_(file), visitor_(visitor), mode_(mode), resync_(file) {}
 
   WalkEnd Run() {
     if (!OpeningMagic()) return end_;
@@ -29,10 +31,16 @@ class Walker {
     end_.end_offset = offset;
     if (mode_ == WalkMode::kSalvage) TakeChannelsFromSummary();
     while (!stopped_) {
+      if (const auto on = WayOn(offset)) {
+        offset = *on;
+        continue;
+      }
       const std::optional<RawRecord> record = Next(file_, 0, offset);
       if (!record) break;
+      const std::uint64_t damaged = end_.damaged_chunks;
       Visit(*record);
       if (stopped_) break;
+      if (end_.damaged_chunks > damaged) suspect_ = offset;
       offset += kRecordHeadBytes + record->body.size();
       end_.end_offset = offset;
       if (record->opcode == static_cast<std::uint8_t>(Opcode::kFooter)) {
@@ -45,6 +53,18 @@ class Walker {
   }
 
  private:
+  /// Of a salvage whose next record cannot be one: where the next whole chunk begins. Behind a
+  /// damaged chunk it may begin before the end that the chunk claims.
+  std::optional<std::uint64_t> WayOn(std::uint64_t offset) {
+    if (mode_ != WalkMode::kSalvage) return std::nullopt;
+    const std::optional<std::uint64_t> suspect = std::exchange(suspect_, std::nullopt);
+    const auto on = resync_.WayOn(offset, suspect);
+    if (!on) return std::nullopt;
+    if (!suspect) Damaged(offset, "bytes where a record should begin");
+    end_.skipped_bytes += *on > offset ? *on - offset : 0;
+    return on;
+  }
+
   bool OpeningMagic() {
     if (file_.substr(0, kMagic.size()) == kMagic) return true;
     end_.cut = kMagic.substr(0, file_.size()) == file_;
@@ -86,6 +106,7 @@ class Walker {
 
   void Damaged(std::uint64_t offset, const std::string& what) {
     ++end_.damaged_records;
+    if (visitor_.damage) visitor_.damage();
     Problem(offset, what);
   }
 
@@ -182,7 +203,7 @@ class Walker {
         break;
       default:
         // 0x80 and above are the applications' own; the rest may come with later versions.
-        if (record.opcode == 0) Damaged(record.offset, "a record of kind 0, which there is not");
+        if (record.opcode == 0) Damaged(record.offset, "a record of unknown kind 0");
         break;
     }
   }
@@ -230,53 +251,36 @@ class Walker {
   void VisitChunk(const RawRecord& record) {
     chunked_ = true;
     const std::optional<Chunk> chunk = DecodeChunk(record.body);
-    std::string what;
-    if (!chunk) {
-      what = "a damaged chunk";
-    } else if (!chunk->compression.empty()) {
-      what = "a chunk compressed by " + chunk->compression + ", which is not read here";
-    } else if (chunk->uncompressed_size != chunk->records.size()) {
-      what = "a chunk whose two sizes differ";
-    } else if (chunk->uncompressed_crc != 0 &&
-               chunk->uncompressed_crc != Crc32(0, chunk->records)) {
-      what = "a chunk whose CRC is wrong";
-    }
+    const std::string what = ProblemOf(chunk);
     if (!what.empty()) {
       ++end_.damaged_chunks;
+      if (visitor_.damage) visitor_.damage();
       return Problem(record.offset, what);
     }
     VisitRecords(chunk->records, static_cast<std::uint64_t>(chunk->records.data() - file_.data()));
   }
 
   void VisitDataEnd(const RawRecord& record) {
-    Cursor in(record.body);
-    const std::uint32_t crc = in.U32();
-    if (!in.ok()) return Damaged(record.offset, "a damaged end of the data");
-    data_ended_ = true;
-    if (crc != 0 && crc != Crc32(0, file_.substr(0, record.offset))) {
-      Problem(record.offset, "the CRC of the data is wrong");
-    }
+    const Closing closing = CheckDataEnd(file_, record.body, record.offset);
+    data_ended_ = data_ended_ || closing.damage.empty();
+    Report(closing, record);
   }
 
   void VisitFooter(const RawRecord& record) {
-    const std::optional<Footer> footer = DecodeFooter(record.body);
-    if (!footer || footer->summary_start > record.offset) {
-      return Damaged(record.offset, "a damaged footer");
-    }
-    if (!data_ended_) Problem(record.offset, "the mark at the end of the data is missing");
-    if (footer->summary_crc == 0) return;
-    // From the summary's start, or from the footer when there is none, to before the CRC.
-    const std::uint64_t start = footer->summary_start == 0 ? record.offset : footer->summary_start;
-    const std::uint64_t stop = record.offset + kRecordHeadBytes + 16;
-    if (footer->summary_crc != Crc32(0, file_.substr(start, stop - start))) {
-      Problem(record.offset, "the CRC of the summary is wrong");
-    }
+    Report(CheckFooter(file_, record.body, record.offset, data_ended_), record);
+  }
+
+  void Report(const Closing& closing, const RawRecord& record) {
+    if (!closing.damage.empty()) return Damaged(record.offset, closing.damage);
+    if (!closing.problem.empty()) Problem(record.offset, closing.problem);
   }
 
   std::string_view file_;
   const Visitor& visitor_;
   WalkMode mode_;
   WalkEnd end_;
+  Resync resync_;
+  std::optional<std::uint64_t> suspect_;  ///< The chunk just left out, whose length may be wrong.
   bool stopped_ = false;
   bool chunked_ = false;
   bool data_ended_ = false;

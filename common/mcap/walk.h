@@ -17,6 +17,7 @@ struct Visitor {
   std::function<void(const Message&)> message;  ///< After its channel.
   std::function<void(const Attachment&)> attachment;
   std::function<void(const Metadata&)> metadata;
+  std::function<void()> damage;  ///< Something is left out here, by its CRC or its form.
 };
 
 enum class WalkMode {
@@ -32,7 +33,9 @@ struct WalkEnd {
   std::uint64_t end_offset = 0;  ///< Behind the last complete record of the outermost level.
   std::uint64_t damaged_chunks = 0;
   std::uint64_t damaged_records = 0;  ///< Left out, not counting those in damaged chunks.
-  bool cut = false;                   ///< The file ends within or before a record it needs.
+  /// Between records that are lost and the chunk from which the walk went on.
+  std::uint64_t skipped_bytes = 0;
+  bool cut = false;  ///< The file ends within or before a record it needs.
 };
 
 /// Visits everything in the file that `file` holds, from its start, without trusting its index. All

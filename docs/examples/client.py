@@ -14,7 +14,7 @@ import sys
 import time
 
 # Field numbers of proto/footing/v1/*.proto, as far as this client uses them.
-HELLO, WELCOME, REFUSED, SUBSCRIBE, PING, PONG, GOODBYE, TICK, GAP = 1, 2, 3, 4, 6, 7, 10, 16, 17
+HELLO, WELCOME, REFUSED, SUBSCRIBE, SUBSCRIBED, PING, PONG, GOODBYE, TICK, GAP = 1, 2, 3, 4, 5, 6, 7, 10, 16, 17
 STATUS, MOTION, BOARDS = 16, 17, 19  # Channels: fields of Tick.
 ROLE_VIEW = 1
 
@@ -140,6 +140,10 @@ def run(address, wanted):
         if number == WELCOME:
             channels = [bytes_field(1, name) for name in (b"status", b"motion", b"boards")]
             connection.send(SUBSCRIBE, b"".join(channels))
+        elif number == SUBSCRIBED:
+            unknown = [value.decode() for field, value in fields(body) if field == 6]
+            if "motion" in unknown:
+                raise ConnectionError(f"this server has no channels {', '.join(unknown)}; is it footingd?")
         elif number == PING:
             connection.answer(body)
         elif number == REFUSED:

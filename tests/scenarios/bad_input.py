@@ -47,7 +47,7 @@ def wrong_starts(stage):
            "/nonexistent.csv", "--rate-hz", 100)
     expect(stage, USAGE, "\"no_such_track\" is not built in (no tracks/no_such_track.json)", "footing-sim", "--track", "no_such_track",
            "--listen", f"unix:{stage.folder}/unused.sock")
-    expect(stage, INVALID, f"{config}: not JSON", "footing-sim", "--track", config, "--listen",
+    expect(stage, INVALID, f"{config} is not JSON: parse error at line 1, column ", "footing-sim", "--track", config, "--listen",
            f"unix:{stage.folder}/unused.sock")
     expect(stage, INVALID, "is not JSON", "footing-sim", "--engine", "pose", "--subject", config, "--listen",
            f"unix:{stage.folder}/unused.sock")

@@ -118,6 +118,15 @@ std::vector<std::string> Participants(const std::string& study_folder) {
   return names;
 }
 
+bool HasRecordings(const std::string& study_folder, const std::string& participant) {
+  std::error_code error;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(ParticipantFolder(study_folder, participant), error)) {
+    if (entry.path().extension() == ".mcap") return true;
+  }
+  return false;
+}
+
 Result<void> CheckProtocol(const std::string& study_folder, const std::string& text) {
   const std::string path = study_folder + "/protocol.json";
   if (!Exists(path)) return {};

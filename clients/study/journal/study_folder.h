@@ -24,6 +24,8 @@ bool Exists(const std::string& path);
 
 /// Names of the participants who have a journal in the folder, in order.
 std::vector<std::string> Participants(const std::string& study_folder);
+/// Whether a participant's folder has a recording.
+bool HasRecordings(const std::string& study_folder, const std::string& participant);
 
 /// Bytes free for this user on the disk of an existing folder.
 Result<std::uint64_t> FreeBytes(const std::string& folder);

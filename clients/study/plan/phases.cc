@@ -1,6 +1,8 @@
 #include "clients/study/plan/phases.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "clients/study/plan/draw.h"
 #include "clients/study/plan/order.h"
@@ -129,18 +131,39 @@ std::vector<Session> MakeSessions(const Protocol& protocol) {
   return sessions;
 }
 
+namespace {
+
+/// Interfaces that every participant uses on the same test track, where there are several.
+void AddConfounded(const Protocol& protocol, std::vector<std::string>& remarks) {
+  if (protocol.participants.size() < 2 || protocol.test_tracks.size() < 2) return;
+  std::map<std::string, std::set<std::string>> tracks;  // Of each interface.
+  for (const Session& session : MakeSessions(protocol)) {
+    for (const Phase& phase : session.phases) {
+      if (phase.kind == PhaseKind::kTestTrack) tracks[phase.interface].insert(phase.track);
+    }
+  }
+  for (const auto& [interface, met] : tracks) {
+    if (met.size() != 1) continue;
+    remarks.push_back("every participant uses " + interface + " on test track " + *met.begin() +
+                      ": the effects of the two cannot be separated; choose another seed");
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> Remarks(const Protocol& protocol) {
   std::vector<std::string> remarks;
   const std::size_t rows = WilliamsOrders(protocol.interfaces.size()).size();
   const std::size_t people = protocol.participants.size();
   if (protocol.order == Order::kWilliams && people % rows != 0) {
     remarks.push_back("the order is not fully balanced: " + std::to_string(people) +
-                      " participants, and a square has " + std::to_string(rows) +
-                      " rows; plan a multiple of " + std::to_string(rows));
+                      (people == 1 ? " participant" : " participants") + ", and a square has " +
+                      std::to_string(rows) + " rows; plan a multiple of " + std::to_string(rows));
   }
   if (protocol.test_tracks.size() > 0 && protocol.test_tracks.size() < protocol.interfaces.size()) {
     remarks.push_back("there are fewer test tracks than interfaces: a participant meets one twice");
   }
+  AddConfounded(protocol, remarks);
   if (protocol.devices.allow_simulated) {
     remarks.push_back("simulated devices are allowed: for trying out, not for a study");
   }

@@ -20,16 +20,6 @@ constexpr std::uint64_t kMostSeed = (1ull << 53) - 1;  // What every JSON reader
 constexpr double kMostPracticeS = 3600;
 constexpr double kLeastActiveMin = 0.01, kMostActiveMin = 600;
 
-/// Codes become names of folders and of trials.
-bool IsCode(const std::string& code) {
-  const auto allowed = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
-           c == '_';
-  };
-  return !code.empty() && code.size() <= kMostCode &&
-         std::all_of(code.begin(), code.end(), allowed);
-}
-
 std::string LowerCase(std::string code) {
   for (char& c : code) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -173,6 +163,15 @@ void ReadTrials(Reader& reader, Protocol& protocol) {
 }
 
 }  // namespace
+
+bool IsCode(const std::string& code) {
+  const auto allowed = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+           c == '_';
+  };
+  return !code.empty() && code.size() <= kMostCode &&
+         std::all_of(code.begin(), code.end(), allowed);
+}
 
 const char* Name(Order order) { return order == Order::kWilliams ? "williams" : "random"; }
 

@@ -18,6 +18,8 @@ const char* Name(Order order);
 
 /// The item of the exertion in journals and tables: a scale of its own beside the ratings.
 inline constexpr const char* kExertionItem = "exertion";
+inline constexpr int kLeastRating = 1, kMostRating = 5;  ///< Gait paper, section 8.1.
+inline constexpr int kMostExertion = 10;                 ///< From 0: Borg's CR10 scale.
 
 struct Survey {
   /// Each is rated 1 to 5 (gait paper, section 8.1).
@@ -86,6 +88,9 @@ struct Protocol {
   DeviceGate devices;
   double disk_mb = 500;  ///< Free space that a session needs.
 };
+
+/// A participant's code names folders and trials: 1 to 16 letters, digits, - and _.
+bool IsCode(const std::string& code);
 
 /// Reads a protocol; comments are allowed. `file` names it in errors, which are InvalidData and say
 /// which key has which value and what it may be.

@@ -22,6 +22,51 @@ std::optional<EventKind> KindNamed(const std::string& name) {
   return std::nullopt;
 }
 
+/// The numbers that events have where they have them; null where one is not known.
+constexpr std::array kNumbers{"active_s",
+                              "anticipation_s",
+                              "attempt",
+                              "distance_m",
+                              "failure",
+                              "heading_oscillation_rad",
+                              "rested_at_active_s",
+                              "time_s",
+                              "trial_time_s",
+                              "wall_s"};
+
+struct Required {
+  EventKind kind;
+  const char* key;
+  bool is_number;
+};
+constexpr Required kRequired[] = {
+    {EventKind::kTrialStarted, "trial", false}, {EventKind::kTrialFinished, "outcome", false},
+    {EventKind::kFailure, "failure", true},     {EventKind::kFailure, "kind", false},
+    {EventKind::kRating, "item", false},        {EventKind::kRating, "value", true},
+    {EventKind::kExertion, "value", true}};
+
+/// What of an event's fields is missing or of another type; a value that is read as 0 instead would
+/// become a result.
+std::string ProblemOf(const Event& event) {
+  for (const char* key : kNumbers) {
+    const auto found = event.fields.find(key);
+    if (found == event.fields.end() || found->is_null() || found->is_number()) continue;
+    return std::string(key) + " must be a number";
+  }
+  for (const Required& one : kRequired) {
+    if (one.kind != event.kind) continue;
+    const auto found = event.fields.find(one.key);
+    if (found == event.fields.end()) return std::string("without ") + one.key;
+    if (one.is_number ? !found->is_number() : !found->is_string()) {
+      return std::string(one.key) + " must be a " + (one.is_number ? "number" : "text");
+    }
+  }
+  const std::string outcome = event.kind == EventKind::kTrialFinished ? event.Text("outcome") : "";
+  if (outcome != "finished" && outcome != "timed_out") return "";
+  const auto time = event.fields.find("time_s");
+  return time != event.fields.end() && time->is_number() ? "" : "without time_s";
+}
+
 }  // namespace
 
 const char* Name(EventKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
@@ -68,6 +113,9 @@ Result<Event> ParseLine(std::string_view line) {
   event.wall_ns = object["wall_ns"];
   for (const char* key : {"number", "wall_ns", "event"}) object.erase(key);
   event.fields = std::move(object);
+  if (const std::string problem = ProblemOf(event); !problem.empty()) {
+    return InvalidData(name + ": " + problem);
+  }
   return event;
 }
 

@@ -17,9 +17,6 @@ using plan::SurveyItem;
 using records::EventKind;
 using screen::Shown;
 
-constexpr int kLeastRating = 1;
-constexpr int kMostRating = 5;
-constexpr int kMostExertion = 10;  // Borg's CR10 scale.
 constexpr const char* kRatingScale = "1 very little, 5 very much";
 constexpr const char* kExertionScale = "0 nothing at all, 10 extremely strong";
 constexpr double kAnswerWithinS = 24 * 3600;  // A wait for a person has no end worth naming.
@@ -36,9 +33,9 @@ struct Scale {
 Scale ScaleOf(plan::SurveyScale scale) {
   switch (scale) {
     case plan::SurveyScale::kRating:
-      return {EventKind::kRating, kLeastRating, kMostRating, kRatingScale};
+      return {EventKind::kRating, plan::kLeastRating, plan::kMostRating, kRatingScale};
     case plan::SurveyScale::kExertion:
-      return {EventKind::kExertion, 0, kMostExertion, kExertionScale};
+      return {EventKind::kExertion, 0, plan::kMostExertion, kExertionScale};
     case plan::SurveyScale::kText:
       return {};
   }
@@ -137,7 +134,7 @@ class SurveyRun {
     const std::string about = item.at_end && !item.interface.empty() ? item.interface + ": " : "";
     const std::string range =
         std::to_string(question.least) + " to " + std::to_string(question.greatest);
-    const bool exertion = question.greatest == kMostExertion;
+    const bool exertion = question.greatest == plan::kMostExertion;
     const std::string prompt =
         question.is_rating()
             ? question.item + (exertion ? " (" + question.scale + ")" : "") + ", " + range + ":"

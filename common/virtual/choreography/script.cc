@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/text/json_text.h"
 #include "common/units/units.h"
 
 namespace footing::choreography {
@@ -160,7 +161,9 @@ double Script::duration_s() const {
 }
 
 Result<Script> ParseScript(const std::string& text, const std::string& origin) {
-  const json parsed = json::parse(text, nullptr, false, true);
+  const auto read = text::ParseJson(text, origin);
+  if (!read) return read.error();
+  const auto& parsed = *read;
   if (!parsed.is_object() || !parsed.contains("keys")) {
     return InvalidData(origin + " must hold a JSON object with keys");
   }

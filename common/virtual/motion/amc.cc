@@ -120,12 +120,18 @@ Result<Motion> ParseAmc(std::string_view text, const std::string& file, const As
   Frame frame(asf, radians);
   Eigen::VectorXd q = Eigen::VectorXd::Zero(asf.skeleton.dof);
   std::size_t frames = 0;
+  std::optional<std::uint64_t> last;  // Its number.
   while (line) {
     const std::string_view word = text::Trim(*line);
     const auto number = text::ToCount(word);
     if (!number) {
       return lines.Fault("expected the number of a frame, found " + text::Quoted(word));
     }
+    if (last && *number != *last + 1) {
+      return lines.Fault("frame " + std::to_string(*number) + " follows frame " +
+                         std::to_string(*last) + "; frames are missing or in another order");
+    }
+    last = *number;
     if (values.size() + dof > kMostValues) {
       return lines.Fault("over " + std::to_string(kMostValues) + " values");
     }

@@ -1,5 +1,6 @@
 #include "common/virtual/motion/trc.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -28,6 +29,7 @@ std::vector<std::string_view> FullFields(std::string_view line) {
 struct Head {
   double rate_hz = 0;
   double unit_m = 0;
+  double frames = 0;  ///< As it says, which may be fewer than there are.
 };
 
 Result<Head> ParseHead(text::Lines& lines) {
@@ -42,6 +44,7 @@ Result<Head> ParseHead(text::Lines& lines) {
   Head head;
   for (std::size_t i = 0; i < keys.size() && i < values.size(); ++i) {
     if (keys[i] == "DataRate") head.rate_hz = text::ToNumber(values[i]).value_or(0);
+    if (keys[i] == "NumFrames") head.frames = text::ToNumber(values[i]).value_or(0);
     if (keys[i] == "Units") {
       head.unit_m = values[i] == "m" ? 1 : values[i] == "cm" ? 1e-2 : values[i] == "mm" ? 1e-3 : 0;
     }
@@ -61,6 +64,13 @@ bool IsGap(std::string_view field) {
          text::EqualsIgnoringCase(field, "-nan");
 }
 
+/// Times are rounded, but no frame is missing, and none has another's place.
+bool IsNext(double steps) { return steps > 0.5 && steps < 1.5; }
+
+constexpr const char* kNotNext =
+    " s is not a frame of DataRate after the one before; frames are missing or in another order, "
+    "or DataRate is wrong";
+
 }  // namespace
 
 Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
@@ -79,6 +89,7 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
   lines.Next();  // X1 Y1 Z1 ...
   std::vector<std::vector<Eigen::Vector3d>> places(markers);
   std::size_t frames = 0;
+  double last_s = 0;
   for (auto line = lines.NextFull(); line; line = lines.NextFull()) {
     const auto fields = text::Fields(*line, '\t');
     if (fields[0].empty()) continue;
@@ -87,6 +98,10 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
     if (!text::ToNumber(fields[0]) || !time_s)
       return lines.Fault("expected a frame number and a time");
     if (frames == 0) tracks.start_s = *time_s;
+    if (frames > 0 && !IsNext((*time_s - last_s) * head->rate_hz)) {
+      return lines.Fault("the time " + std::string(fields[1]) + kNotNext);
+    }
+    last_s = *time_s;
     for (std::size_t marker = 0; marker < markers; ++marker) {
       Eigen::Vector3d p;
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -104,6 +119,10 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
     ++frames;
   }
   if (frames == 0) return lines.Fault("no frame in the file");
+  if (static_cast<double>(frames) < head->frames) {
+    return lines.Fault("the file ends after frame " + std::to_string(frames) +
+                       ", and NumFrames is " + std::to_string(std::llround(head->frames)));
+  }
   for (auto& track : places) {
     tracks.p.emplace_back(3, static_cast<Eigen::Index>(frames));
     for (std::size_t i = 0; i < frames; ++i) {

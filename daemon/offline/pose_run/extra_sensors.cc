@@ -36,11 +36,17 @@ HeadTracker::HeadTracker(const body::Body& body, HeadDevice device, const HeadEr
       errors_(errors),
       random_(seed + kHeadSeed),
       sphere_(body::SkeletonPoints(body)[kHeadJoint]),
+      t_pose_off_m_(noise::NormalVector(errors.t_pose_sd_m, random_)),
       kinect_(body, seed + kHeadSeed, step_s, Unhidden()) {
-  sphere_.p_J_m += noise::NormalVector(errors.seat_m, random_);
+  body::Kinematics upright(body.skeleton);
+  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), upright);
+  const auto joint = static_cast<std::size_t>(sphere_.joint);
+  sphere_.p_J_m += upright.R_WJ[joint].transpose() * Eigen::Vector3d(0, 0, errors.above_m) +
+                   noise::NormalVector(errors.seat_sd_m, random_);
 }
 
-void HeadTracker::Advance(const body::Kinematics& at, reconstruction::Inputs& inputs) {
+void HeadTracker::Advance(const body::Kinematics& at, bool in_t_pose,
+                          reconstruction::Inputs& inputs) {
   reconstruction::JointInput& head = inputs.joints[kHeadJoint];
   if (device_ == HeadDevice::kKinect) {
     reconstruction::Inputs seen;
@@ -50,7 +56,8 @@ void HeadTracker::Advance(const body::Kinematics& at, reconstruction::Inputs& in
   }
   head.valid = true;
   head.p_W_m = body::Place(sphere_, at) + noise::NormalVector(errors_.noise_m, random_);
-  head.sd_m.setConstant(std::max(std::hypot(errors_.noise_m, errors_.seat_m), kLeastSdM));
+  if (in_t_pose) head.p_W_m += t_pose_off_m_;
+  head.sd_m.setConstant(std::max(errors_.noise_m, kLeastSdM));
 }
 
 Belt::Belt(const virtual_sensors::Scene& scene, const BeltErrors& errors, std::uint64_t seed)
@@ -83,9 +90,9 @@ ExtraSensors::ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head,
   if (belt) belt_.emplace(scene, BeltErrors{}, seed);
 }
 
-void ExtraSensors::Advance(const body::Kinematics& at, Eigen::Index column, bool aligns,
-                           reconstruction::Inputs& inputs) {
-  if (head_) head_->Advance(at, inputs);
+void ExtraSensors::Advance(const body::Kinematics& at, Eigen::Index column, bool in_t_pose,
+                           bool aligns, reconstruction::Inputs& inputs) {
+  if (head_) head_->Advance(at, in_t_pose, inputs);
   if (!belt_) return;
   inputs.belt = belt_->Until(column, step_s_);
   if (aligns) belt_->Align();

@@ -27,9 +27,12 @@ enum class HeadDevice {
 
 struct HeadErrors {
   double noise_m = 0.01;  ///< White, along each axis; of kSphere.
-  /// How far the cap has the sphere from where the head is taken to be, along each axis of the
-  /// head: constant, and not known. Of kSphere.
-  double seat_m = 0.02;
+  /// Of kSphere: how far above the middle of the head the cap has it in the mean, and a standard
+  /// deviation along each axis of the head. Constant, and not known.
+  double above_m = 0.12, seat_sd_m = 0.02;
+  /// Of kSphere: how far the head is in the T-pose from where the body's T-pose has it; a standard
+  /// deviation along each axis of W.
+  double t_pose_sd_m = 0.02;
 };
 
 class HeadTracker {
@@ -39,13 +42,14 @@ class HeadTracker {
               std::uint64_t seed, double step_s);
 
   /// The head of the inputs' joints, while the joints are `at`.
-  void Advance(const body::Kinematics& at, reconstruction::Inputs& inputs);
+  void Advance(const body::Kinematics& at, bool in_t_pose, reconstruction::Inputs& inputs);
 
  private:
   HeadDevice device_;
   HeadErrors errors_;
   noise::Random random_;
   body::Point sphere_;
+  Eigen::Vector3d t_pose_off_m_;
   KinectBody kinect_;
 };
 
@@ -85,9 +89,9 @@ class ExtraSensors {
   ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head, bool belt, std::uint64_t seed,
                double step_s);
 
-  /// Puts what they measure into the inputs of a frame, whose joints are `at`. `aligns`: by now
-  /// the T-pose was held for some seconds.
-  void Advance(const body::Kinematics& at, Eigen::Index column, bool aligns,
+  /// Puts what they measure into the inputs of a frame, whose joints are `at`. `in_t_pose`: it
+  /// is not complete yet; `aligns`: by now it was held for some seconds.
+  void Advance(const body::Kinematics& at, Eigen::Index column, bool in_t_pose, bool aligns,
                reconstruction::Inputs& inputs);
 
  private:

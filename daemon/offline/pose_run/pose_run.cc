@@ -143,7 +143,7 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     } else if (settings.hands) {
       MeasureHands(scene.body, at, settings.hand_noise_m, random, frame.inputs.hands);
     }
-    extra.Advance(at, column, i == aligned, frame.inputs);
+    extra.Advance(at, column, time_s < kStandS, i == aligned, frame.inputs);
     run.frames.push_back(std::move(frame));
   }
   run.outside_share = loaded > 0 ? static_cast<double>(outside) / static_cast<double>(loaded) : 0;

@@ -43,7 +43,8 @@ int Run(const BasisOptions& options, const Shared& shared) {
                                    {"components_9999", basis.ComponentsFor(0.9999)}};
   AppendOwn(*set, report);
   if (shared.json) {
-    std::cout << report.dump() << std::endl;
+    std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << std::endl;
   } else {
     std::cout << options.model.out << ": " << basis.mean.size() << " components of "
               << trained->poses << " poses; " << basis.ComponentsFor(0.9) << " hold 90 %, "

@@ -49,7 +49,8 @@ int Run(const CascadeOptions& options, const Shared& shared) {
                                          {"validation_mse", result.validation_mse},
                                          {"seconds", seconds}};
   if (shared.json) {
-    std::cout << report.dump() << std::endl;
+    std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << std::endl;
   } else {
     std::cout << options.data.model.out << ": " << result.hidden_units << " hidden units after "
               << result.epochs << " epochs, mean squared error " << result.train_mse

@@ -39,7 +39,8 @@ int Run(const MlpOptions& options, const Shared& shared) {
                                          {"seconds", seconds},
                                          {"goal_reached", result.goal_reached}};
   if (shared.json) {
-    std::cout << report.dump() << std::endl;
+    std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << std::endl;
   } else {
     std::cout << options.data.model.out << ": " << options.mlp.hidden << " hidden units after "
               << result.epochs << " epochs, mean squared error " << result.train_mse

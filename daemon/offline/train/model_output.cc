@@ -47,7 +47,8 @@ int Deliver(const model::Model& model, const ModelOptions& options,
             const nlohmann::ordered_json& report, const Shared& shared) {
   if (auto written = WriteModel(model, options); !written) return cli::Report(written.error());
   if (!shared.json) std::cout << options.out << ": ";
-  std::cout << report.dump() << std::endl;
+  std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << std::endl;
   return 0;
 }
 

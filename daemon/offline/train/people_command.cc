@@ -202,7 +202,10 @@ int Run(const PeopleOptions& options, const Shared& shared) {
   const auto scored = ScoreOwn(study, *people, options.more, shared.ranks);
   if (!scored) return cli::Report(scored.error());
   const ordered_json report = ReportOf(study, *people, shared.ranks.Share(*scored));
-  if (shared.ranks.first()) std::cout << report.dump(shared.json ? -1 : 2) << "\n";
+  if (shared.ranks.first())
+    std::cout << report.dump(shared.json ? -1 : 2, ' ', false,
+                             nlohmann::ordered_json::error_handler_t::replace)
+              << "\n";
   return 0;
 }
 

@@ -281,7 +281,10 @@ Result<ordered_json> RunChecked(const Options& options, const ranks::Ranks& rank
 int Run(const Options& options, const ranks::Ranks& ranks) {
   const Result<ordered_json> report = RunChecked(options, ranks);
   if (!report) return cli::Report(report.error());
-  if (options.json && ranks.first()) std::printf("%s\n", report->dump().c_str());
+  if (options.json && ranks.first())
+    std::printf(
+        "%s\n",
+        report->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
   return 0;
 }
 

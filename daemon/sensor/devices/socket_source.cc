@@ -1,10 +1,10 @@
 #include "daemon/sensor/devices/socket_source.h"
 
+#include <google/protobuf/unknown_field_set.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <map>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +16,7 @@
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/devices/attachment.h"
+#include "daemon/sensor/devices/device_connection.h"
 #include "daemon/sensor/devices/device_messages.h"
 #include "footing/v1/device.pb.h"
 
@@ -82,19 +83,6 @@ class SocketSource::Implementation {
   }
 
  private:
-  struct Connection {
-    std::unique_ptr<transport::FramedConnection> link;
-    transport::Peer peer;
-    std::map<std::uint32_t, DeviceHandle> slots;
-    std::set<std::uint32_t> refused_slots;
-    std::int64_t heard_ns = 0;
-    bool closing = false;
-  };
-  struct Place {
-    std::uint64_t connection;
-    std::uint32_t slot;
-  };
-
   transport::FramedConnection& LinkOf(const Place& place) {
     return *connections_.at(place.connection).link;
   }
@@ -179,8 +167,20 @@ class SocketSource::Implementation {
       case v1::DeviceEnvelope::kRefused:
         return Refuse(connection, "outputs go the other way");
       case v1::DeviceEnvelope::BODY_NOT_SET:
-        return Refuse(connection, "a message is empty");
+        return TakeUnknown(connection);
     }
+  }
+
+  /// Messages that a later version has are left out; the rest of the connection goes on.
+  void TakeUnknown(Connection& connection) {
+    if (envelope_.GetReflection()->GetUnknownFields(envelope_).empty()) {
+      return Refuse(connection, "a message is empty");
+    }
+    if (std::exchange(connection.is_newer, true)) return;
+    handlers_.on_trouble(
+        "device socket: a message of a kind that this footingd does not know is ignored, and so "
+        "are "
+        "all that follow; is the sender newer?");
   }
 
   static void Pass(const auto& handler, std::int64_t received_ns, const auto& frame) {

@@ -44,6 +44,10 @@ std::string ProblemOf(const stream::TrackedPoint& point) {
   const bool has_joint = point.joint != stream::BodyJoint::kUnspecified;
   if (!has_role && !has_joint) return "no role and no joint that is known";
   if (has_role && has_joint) return "a role and a joint, must have one of them";
+  if (has_role && point.role != DeviceRole::kLeftHand && point.role != DeviceRole::kRightHand) {
+    return std::string("the role ") + stream::Name(point.role) +
+           ", must be left_hand or right_hand; other points have a joint";
+  }
   if (!IsNear(point.position_m)) return "a position that is not within 10 m";
   if (!(point.confidence >= 0 && point.confidence <= 1)) {
     return "a confidence that is not from 0 to 1";

@@ -157,6 +157,7 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   }
   if (content_.has_setup) content_.setup = SetupInForce();
   WatchSetup();
+  for (const std::string& line : refusals_.Due(now_ns)) ports_.log({line, "", true});
   PublishStatus(now_ns);
   return std::exchange(content_, {});
 }

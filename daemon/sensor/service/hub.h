@@ -121,6 +121,8 @@ class Hub {
   void Bind(Device& device);
   bool GivesWay(const Device& holder, const Device& device) const;
   Binding ChooseBinding(const Device& device) const;
+  /// For a log line, why it has another role than it asked for; empty when it has that one.
+  std::string WhyOtherRole(const Device& device) const;
   void Rebind(Device& device, const Binding& binding);
   void RebuildRigs();
   void KeepRole(const std::string& serial, const Binding& binding);

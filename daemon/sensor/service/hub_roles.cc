@@ -49,6 +49,19 @@ Binding Hub::ChooseBinding(const Device& device) const {
   return wish;
 }
 
+std::string Hub::WhyOtherRole(const Device& device) const {
+  const DeviceRole wished = device.identity().wished_role;
+  if (wished == DeviceRole::kUnspecified || wished == device.binding().role) return "";
+  const std::string text = std::string(", not ") + stream::Name(wished) + " as it asked: ";
+  if (!RoleFits(device.placement(), wished)) {
+    return text + "a " + stream::Name(device.kind()) + " cannot be that";
+  }
+  const bool assigned = assigned_.contains(device.identity().serial);
+  return text + (assigned ? device.binding().rig + "/" + stream::Name(device.binding().role) +
+                                " is assigned to it"
+                          : "that is taken");
+}
+
 void Hub::Bind(Device& device) {
   Rebind(device, ChooseBinding(device));
   if (device.binding().role == DeviceRole::kUnspecified) return;

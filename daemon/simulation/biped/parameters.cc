@@ -1,4 +1,5 @@
 #include "daemon/simulation/biped/parameters.h"
+#include "common/text/json_text.h"
 
 #include <algorithm>
 #include <array>
@@ -43,7 +44,9 @@ bool Known(const std::string& key) {
 }  // namespace
 
 Result<BipedParameters> ParseBiped(const std::string& text, const std::string& origin) {
-  const auto root = nlohmann::json::parse(text, nullptr, false, true);
+  const auto read = text::ParseJson(text, origin);
+  if (!read) return read.error();
+  const auto& root = *read;
   if (!root.is_object()) return InvalidData(origin + ": not a JSON object");
   if (!root.contains("version") || root["version"] != 1) {
     return InvalidData(origin + ": version must be 1, the only one known");

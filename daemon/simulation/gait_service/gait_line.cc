@@ -120,6 +120,7 @@ Result<void> GaitLine::SetInterface(const transport::SessionInfo& who,
 v1::CommandResult GaitLine::OnCommand(const transport::SessionInfo& who,
                                       const v1::Command& command) {
   const std::int64_t now_ns = clock::MonotonicNs();
+  if (const auto refusal = serving::RefuseOtherCharacter(command)) return *refusal;
   if (const auto answer = lease_.Answer(command, who.session, now_ns)) return *answer;
   if (command.has_set_study()) return study_.OnSetStudy(who, command.set_study());
   if (command.has_set_game()) {

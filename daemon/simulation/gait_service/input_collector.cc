@@ -27,6 +27,15 @@ bool IsFinite(const v1::BoardSample& sample) {
          std::isfinite(sample.cop_x_m()) && std::isfinite(sample.cop_y_m());
 }
 
+/// Whether the device can have what the interface reads: a stick is that of a Nunchuk. One that has
+/// not said yet what is plugged in may have it.
+bool MayServe(const v1::DeviceStatus& device, UserInterface interface) {
+  if (interface != UserInterface::kJoystick) return true;
+  return device.extension() == v1::EXTENSION_UNSPECIFIED ||
+         device.extension() == v1::EXTENSION_NUNCHUK ||
+         device.extension() == v1::EXTENSION_MOTION_PLUS_NUNCHUK;
+}
+
 /// A sample that is used as it is: decoded when it arrived, it then waited for its tick.
 FeatureStamps OfSample(std::int64_t received_ns, const v1::Tick& tick) {
   return {0, received_ns, received_ns, tick.host_ns(), 0};
@@ -52,7 +61,8 @@ Result<std::string> InputCollector::RigFor(const mapping::InterfaceOptions& opti
   if (!rig_.empty()) roles[rig_] = 0;
   for (const v1::DeviceStatus& device : status_.devices()) {
     const bool usable = device.state() != v1::DEVICE_STATE_LOST;
-    if (usable && (wanted_rig_.empty() || device.rig() == wanted_rig_)) {
+    if (usable && MayServe(device, options.interface) &&
+        (wanted_rig_.empty() || device.rig() == wanted_rig_)) {
       roles[device.rig()] |= stream::RoleBit(RoleIn(device.role()));
     }
   }
@@ -60,6 +70,12 @@ Result<std::string> InputCollector::RigFor(const mapping::InterfaceOptions& opti
   if (missing == 0) return rig_;
   for (const auto& [rig, present] : roles) {
     if (mapping::MissingRoles(options, present) == 0) return rig;
+  }
+  if (options.interface == UserInterface::kJoystick) {
+    return Failure(
+        (rig_.empty() ? "there is no" : "the rig " + rig_ + " has no") +
+        std::string(" Wiimote in a hand with a Nunchuk plugged in; plug one in, or give "
+                    "its Wiimote the role left_hand or right_hand (footing-ctl assign)"));
   }
   return Failure((rig_.empty() ? "there is no " : "the rig " + rig_ + " lacks ") +
                  stream::RoleNames(missing) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/text/json_text.h"
 #include "common/units/units.h"
 
 namespace footing::mapping {
@@ -50,7 +51,9 @@ double Scaling::operator()(double from) const {
 
 Result<void> ReadTable(const std::string& text, const std::string& origin,
                        const TableFields& fields, const std::vector<TableFlag>& flags) {
-  const json root = json::parse(text, nullptr, false, true);
+  const auto parsed = text::ParseJson(text, origin);
+  if (!parsed) return parsed.error();
+  const auto& root = *parsed;
   if (!root.is_object()) return InvalidData(origin + ": not a JSON object");
   if (!root.contains("version") || root["version"] != 1) {
     return InvalidData(origin + ": version must be 1, the only one known");

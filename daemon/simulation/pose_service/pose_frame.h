@@ -53,7 +53,8 @@ inline constexpr int kMaxPoseApplied = 4;
 struct PoseInputStatus {
   bool simulated = false;
   PoseSource source = PoseSource::kBoards;
-  bool insoles_idle = false;  ///< They measure, but this mode or lag cannot follow them.
+  bool insoles_await = false;  ///< They measure, and take a T-pose of their own; boards go on.
+  bool insoles_idle = false;   ///< They measure, but this mode or lag cannot follow them.
   std::array<bool, momentum::kFeet> feet_measured{};       ///< By the source, now.
   std::array<double, momentum::kFeet> load_n{};            ///< By the source, calibrated or not.
   std::array<bool, momentum::kFeet> at_edge{};             ///< The COP is at the edge of a board.

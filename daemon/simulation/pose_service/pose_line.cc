@@ -111,6 +111,7 @@ v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
 
 v1::CommandResult PoseLine::OnCommand(const transport::SessionInfo& who,
                                       const v1::Command& command) {
+  if (const auto refusal = serving::RefuseOtherCharacter(command)) return *refusal;
   if (const auto answer = lease_.Answer(command, who.session, clock::MonotonicNs())) return *answer;
   if (command.has_set_subject()) return TakeSubject(command.set_subject());
   if (command.has_calibrate_t_pose()) {

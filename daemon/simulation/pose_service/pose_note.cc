@@ -161,6 +161,8 @@ std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
   const bool measured = note.empty();
   if (frame.input.insoles_idle)
     Add(note, "insoles need the best mode without lag: they are not followed");
+  if (frame.input.insoles_await)
+    Add(note, "insoles need a T-pose of their own: until then the boards are followed");
   if (!frame.t_pose.complete) {
     if (measured) Add(note, Awaited(frame));
     return note;

@@ -109,7 +109,6 @@ v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subje
 
 stream::Skeleton ToSkeleton(const body::Body& body) {
   stream::Skeleton skeleton;
-  skeleton.character = 1;
   skeleton.name = "person";
   skeleton.contact_points = {"left_foot", "right_foot"};
   for (const body::Joint& joint : body.skeleton.joints) {

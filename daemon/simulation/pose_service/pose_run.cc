@@ -80,11 +80,20 @@ void PoseRun::ApplyRequests(const PoseInputs& inputs) {
 
 void PoseRun::ChooseSource() {
   const auto measures = [](const auto& feet) { return feet[0].valid || feet[1].valid; };
-  if (subject_->walk && measures(insoles_.feet)) {
+  const bool on_boards = measures(sensors_.loads.feet);
+  // Insoles that come after the T-pose take one of their own before they are followed.
+  if (InsolesAwaitTPose() && on_boards) {
+    source_ = PoseSource::kBoards;
+  } else if (subject_->walk && measures(insoles_.feet)) {
     source_ = PoseSource::kInsoles;
-  } else if (!subject_->walk || measures(sensors_.loads.feet)) {
+  } else if (!subject_->walk || on_boards) {
     source_ = PoseSource::kBoards;
   }
+}
+
+bool PoseRun::InsolesAwaitTPose() const {
+  return subject_->walk && (insoles_.feet[0].valid || insoles_.feet[1].valid) &&
+         !subject_->walk->output().calibrated && subject_->reconstruction.output().calibrated;
 }
 
 void PoseRun::Advance() {
@@ -154,6 +163,7 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
   input.simulated = simulated_;
   input.source = source_;
   input.insoles_idle = !subject_->walk && (insoles_.feet[0].valid || insoles_.feet[1].valid);
+  input.insoles_await = source_ == PoseSource::kBoards && InsolesAwaitTPose();
   const bool walks = source_ == PoseSource::kInsoles;
   for (std::size_t side = 0; side < momentum::kFeet; ++side) {
     input.feet_measured[side] = walks ? insoles_.feet[side].valid : sensors_.loads.feet[side].valid;

@@ -69,6 +69,7 @@ class PoseRun {
  private:
   void ApplyRequests(const PoseInputs& inputs);
   void ChooseSource();
+  bool InsolesAwaitTPose() const;
   void Advance();
   const reconstruction::Output& output() const;
 

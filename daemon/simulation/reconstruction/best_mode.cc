@@ -8,6 +8,10 @@
 namespace footing::reconstruction {
 namespace {
 
+// How far a head may be from where the T-pose has it, or, of a tracker that did not see the T-pose,
+// from the middle of the head: one standard deviation along each axis.
+constexpr double kSeatedSdM = 0.02, kUnseatedSdM = 0.05;
+
 /// The less the feet bear, the less their loads show where C is ahead and aside: it may be where
 /// hands and feet have it.
 void DoubtUnloaded(double mass_kg, Measurement& then) {
@@ -33,6 +37,8 @@ void BestMode::Start(const momentum::TPose& pose) {
   state_.pose.at = state_.model->t_pose_at;
   MoveToWorld(state_.origin_m, state_.pose);
   skeleton_.Start();
+  lone_points_ = state_.model->joints;
+  seat_.Start(lone_points_[kHeadJoint]);
   estimate_.Start(pose, state_.origin_m);
   measured_.Clear();
   truth_.Clear();
@@ -42,8 +48,12 @@ void BestMode::Start(const momentum::TPose& pose) {
   report_.Start();
 }
 
+const JointPoints& BestMode::PointsOf(const JointInputs& joints) const {
+  return IsSkeleton(joints) ? state_.model->joints : lone_points_;
+}
+
 void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output) {
-  const Measurement now = estimate_.Advance(Plausible(inputs));
+  const Measurement now = estimate_.Advance(Plausible(inputs), lone_points_);
   output.mass_kg = estimate_.mass_kg();
   ReportEstimate(now.momentum, state_.solver_resets, output);
   output.valid = output.valid && !now.momentum.stepped;
@@ -59,13 +69,21 @@ void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output)
     solver_.Reset();
     return;
   }
-  skeleton_.Learn(*state_.model, then.joints, state_.pose.at, state_.options.step_s());
+  seat_.See(UsableJoints(inputs.joints, state_.origin_m), state_.pose.at, state_.options.step_s());
+  lone_points_[kHeadJoint] = seat_.point();
+  skeleton_.Learn(state_.model->joints, then.joints, state_.pose.at, state_.options.step_s());
   Report(then, true_then, output);
 }
 
 Inputs BestMode::Plausible(const Inputs& inputs) const {
   Inputs plausible = skeleton_.Without(inputs);
-  GateJoints(*state_.model, state_.pose.at, plausible.joints);
+  JointInput& head = plausible.joints[kHeadJoint];
+  if (head.valid && !IsSkeleton(plausible.joints)) {
+    head.valid = !seat_.Seeks();
+    const double seat_m = seat_.found() ? kSeatedSdM : kUnseatedSdM;
+    head.sd_m = (head.sd_m.cwiseAbs2().array() + seat_m * seat_m).sqrt();
+  }
+  GateJoints(PointsOf(plausible.joints), state_.pose.at, plausible.joints);
   return plausible;
 }
 
@@ -96,7 +114,7 @@ void BestMode::SetTargets(const Measurement& then, const Truth& truth, const Out
                    state_.shown_feet);
   }
   // After the feet, whose places are the first targets of their joints.
-  AddJointTargets(*state_.model, then.joints, state_.targets);
+  AddJointTargets(PointsOf(then.joints), then.joints, state_.targets);
   AddBeltTargets(*state_.model, then.belt, state_.options.best, state_.targets);
   SetMomentumTargets(*state_.model, then, output.mass_kg, state_.options, state_.targets);
   OverrideMomentumTargets(truth, state_.options, state_.targets);

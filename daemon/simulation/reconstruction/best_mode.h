@@ -4,6 +4,7 @@
 #include "daemon/simulation/reconstruction/best_solver.h"
 #include "daemon/simulation/reconstruction/clean_up.h"
 #include "daemon/simulation/reconstruction/delay.h"
+#include "daemon/simulation/reconstruction/head_seat.h"
 #include "daemon/simulation/reconstruction/measurement.h"
 #include "daemon/simulation/reconstruction/mode_state.h"
 #include "daemon/simulation/reconstruction/skeleton.h"
@@ -32,12 +33,16 @@ class BestMode {
   Measurement Delayed(const Measurement& now);
   /// Without what the joints are off by in common, and without those that are implausible.
   Inputs Plausible(const Inputs& inputs) const;
+  /// What these joints show.
+  const JointPoints& PointsOf(const JointInputs& joints) const;
   void SetTargets(const Measurement& then, const Truth& truth, const Output& output);
   void CleanUp(const Measurement& then, const Truth& truth);
   void Report(const Measurement& then, const Truth& truth, Output& output);
 
   ModeState state_;
   SkeletonOffset skeleton_;
+  HeadSeat seat_;
+  JointPoints lone_points_;  ///< Of joints outside a skeleton.
   BestEstimate estimate_;
   Lag<Measurement> measured_;
   Lag<Truth> truth_;

@@ -18,7 +18,7 @@ void InsoleMode::Start(const momentum::TPose& pose) {
 }
 
 void InsoleMode::Advance(const Inputs& inputs, const WalkPrior& prior, Output& output) {
-  const Measurement now = estimate_.Advance(inputs);
+  const Measurement now = estimate_.Advance(inputs, state_.model->joints);
   output.mass_kg = estimate_.mass_kg();
   ReportEstimate(now.momentum, state_.solver_resets, output);
   SetTargets(now, prior);

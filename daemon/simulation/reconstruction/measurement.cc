@@ -108,17 +108,17 @@ void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& ori
   origin_m_ = origin_m;
 }
 
-Measurement BestEstimate::Advance(const Inputs& inputs) {
+Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& points) {
   Measurement now{UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
                   estimator_->Advance(inputs.loads), UsableJoints(inputs.joints, origin_m_),
                   UsableBelt(inputs.belt)};
   if (options_.use_posture && now.both_hands()) {
-    SeePosture(now);
+    SeePosture(points, now);
   }
   return now;
 }
 
-void BestEstimate::SeePosture(Measurement& now) {
+void BestEstimate::SeePosture(const JointPoints& points, Measurement& now) {
   likely_.Advance({now.hands[0].p_W_m, now.hands[1].p_W_m}, now.momentum);
   targets_ = {};
   AddHandTargets(*model_, now, options_.best, targets_);
@@ -130,16 +130,16 @@ void BestEstimate::SeePosture(Measurement& now) {
   const Eigen::Vector3d plain_m = body::CentreOfMass(model_->body, plain_.at());
   now.posture_com_W_m = origin_m_ + plain_m;
   if (learned_) {
-    AddExtraTargets(now);
+    AddExtraTargets(now, points);
     learned_->Solve(targets_, likely_.Predict(origin_m_));
     now.posture_com_W_m = origin_m_ + body::CentreOfMass(model_->body, learned_->at());
   }
   now.momentum = estimator_->SeePosture(origin_m_.y() + plain_m.y(), *now.posture_com_W_m);
 }
 
-void BestEstimate::AddExtraTargets(const Measurement& now) {
+void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& points) {
   pose::PoseTargets extra;
-  if (!now.skeleton()) AddJointTargets(*model_, now.joints, extra);
+  if (!now.skeleton()) AddJointTargets(points, now.joints, extra);
   AddBeltTargets(*model_, now.belt, options_.best, extra);
   MoveOrigin(origin_m_, extra);
   for (int i = 0; i < extra.count; ++i) targets_.Add(extra.points[static_cast<std::size_t>(i)]);

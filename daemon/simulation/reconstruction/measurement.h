@@ -54,7 +54,8 @@ class BestEstimate {
   BestEstimate(const SubjectModel& model, const Options& options);
 
   void Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m);
-  Measurement Advance(const Inputs& inputs);
+  /// `points`: what joints outside a skeleton show.
+  Measurement Advance(const Inputs& inputs, const JointPoints& points);
   /// Weighed in the T-pose, corrected since.
   double mass_kg() const { return estimator_->mass_kg(); }
   /// Of the last frame with both hands.
@@ -63,10 +64,10 @@ class BestEstimate {
  private:
   /// Takes in the COM of poses of hands and feet alone: they use no load, so their errors are their
   /// own.
-  void SeePosture(Measurement& now);
+  void SeePosture(const JointPoints& points, Measurement& now);
   /// What a tracked head and a belt add to hands and feet. Not for the pose about the mean of all:
   /// the lateral filter knows how that one errs by hands and feet.
-  void AddExtraTargets(const Measurement& now);
+  void AddExtraTargets(const Measurement& now, const JointPoints& points);
 
   const SubjectModel* model_;
   Options options_;

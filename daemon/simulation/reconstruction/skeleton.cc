@@ -37,19 +37,19 @@ bool IsSkeleton(const JointInputs& joints) {
                        [](const JointInput& joint) { return joint.valid; }) >= kLeastJoints;
 }
 
-void AddJointTargets(const SubjectModel& model, const JointInputs& joints,
+void AddJointTargets(const JointPoints& points, const JointInputs& joints,
                      pose::PoseTargets& targets) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (joints[i].valid) targets.Add(TargetOf(model.joints[i], joints[i]));
+    if (joints[i].valid) targets.Add(TargetOf(points[i], joints[i]));
   }
 }
 
-void GateJoints(const SubjectModel& model, const body::Kinematics& at, JointInputs& joints) {
+void GateJoints(const JointPoints& points, const body::Kinematics& at, JointInputs& joints) {
   std::array<double, stream::kBodyJoints> off{};
   int seen = 0, dropped = 0;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!joints[i].valid) continue;
-    const pose::PointTarget target = TargetOf(model.joints[i], joints[i]);
+    const pose::PointTarget target = TargetOf(points[i], joints[i]);
     off[i] = Whitened(target, target.p_W_m - PlaceOf(target, at)).norm();
     joints[i].valid = std::isfinite(off[i]);
     if (!joints[i].valid) continue;
@@ -73,14 +73,14 @@ Inputs SkeletonOffset::Without(const Inputs& inputs) const {
   return corrected;
 }
 
-void SkeletonOffset::Learn(const SubjectModel& model, const JointInputs& joints,
+void SkeletonOffset::Learn(const JointPoints& points, const JointInputs& joints,
                            const body::Kinematics& at, double step_s) {
   if (!IsSkeleton(joints)) return;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), weights = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!joints[i].valid) continue;
     const Eigen::Vector3d weight = joints[i].sd_m.cwiseAbs2().cwiseInverse();
-    const Eigen::Vector3d off_m = joints[i].p_W_m - body::Place(model.joints[i], at);
+    const Eigen::Vector3d off_m = joints[i].p_W_m - body::Place(points[i], at);
     sum += weight.cwiseProduct(off_m);
     weights += weight;
   }

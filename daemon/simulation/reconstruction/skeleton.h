@@ -15,14 +15,15 @@ namespace footing::reconstruction {
 /// hands show.
 bool IsSkeleton(const JointInputs& joints);
 
-/// A term for each valid joint, with its covariance. A joint that is not seen has none.
-void AddJointTargets(const SubjectModel& model, const JointInputs& joints,
+/// A term for each valid joint, which shows its one of `points`, with its covariance. A joint that
+/// is not seen has none.
+void AddJointTargets(const JointPoints& points, const JointInputs& joints,
                      pose::PoseTargets& targets);
 
 /// A joint that is far from where the last pose, `at` in W, has it counts less, the less the
 /// further; one that is implausibly far, or not finite, is not valid. Where many are implausibly
 /// far it is the pose that is wrong, and none is dropped for that.
-void GateJoints(const SubjectModel& model, const body::Kinematics& at, JointInputs& joints);
+void GateJoints(const JointPoints& points, const body::Kinematics& at, JointInputs& joints);
 
 /// What all joints are off by in common, as a camera that stands not quite where it was found to
 /// stand makes them. Feet and COM stand still in W, so it is learned from what the joints are off
@@ -35,7 +36,7 @@ class SkeletonOffset {
   /// sees: another one knows a hand better than the offset is known.
   Inputs Without(const Inputs& inputs) const;
   /// One frame: `joints` by Without, and gated; `at` in W is the pose that was solved for them.
-  void Learn(const SubjectModel& model, const JointInputs& joints, const body::Kinematics& at,
+  void Learn(const JointPoints& points, const JointInputs& joints, const body::Kinematics& at,
              double step_s);
   const Eigen::Vector3d& offset_m() const { return offset_m_; }
 

@@ -21,6 +21,8 @@
 
 namespace footing::reconstruction {
 
+using JointPoints = std::array<body::Point, stream::kBodyJoints>;  ///< By body::IndexOf.
+
 /// What never changes while one person is reconstructed; the steps of a mode point into it.
 struct SubjectModel {
   body::Body body;
@@ -31,8 +33,8 @@ struct SubjectModel {
   std::array<std::vector<std::size_t>, momentum::kFeet> shanks;  ///< Joints from the knees down.
   std::array<std::vector<std::size_t>, kHands> arm_joints;       ///< From the shoulders down.
   std::array<body::Point, kHands> fists;
-  std::array<body::Point, stream::kBodyJoints> joints;  ///< Those of a tracked skeleton.
-  std::vector<arms::ArmGeometry> arms;                  ///< kHands.
+  JointPoints joints;                   ///< Those of a tracked skeleton.
+  std::vector<arms::ArmGeometry> arms;  ///< kHands.
   pose::PoseBasis basis;
   PoseRegression regression;  ///< Empty where the mode does without.
   pose::PoseBasis rest;       ///< Errors of the regression.

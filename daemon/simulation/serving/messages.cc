@@ -1,5 +1,7 @@
 #include "daemon/simulation/serving/messages.h"
 
+#include <google/protobuf/descriptor.h>
+
 #include "common/wire/wire.h"
 
 namespace footing::serving {
@@ -46,8 +48,25 @@ void AddLeaseEvents(const std::vector<std::string>& changes, std::int64_t host_n
 v1::Skeletons MakeSkeletons(const std::string& world, const stream::Skeleton& skeleton) {
   v1::Skeletons skeletons;
   skeletons.set_world(world);
-  *skeletons.add_skeletons() = wire::ToProto(skeleton);
+  v1::Skeleton& message = *skeletons.add_skeletons();
+  message = wire::ToProto(skeleton);
+  message.set_character(kCharacter);
   return skeletons;
+}
+
+std::optional<v1::CommandResult> RefuseOtherCharacter(const v1::Command& command) {
+  namespace pb = google::protobuf;
+  const pb::Reflection& fields = *command.GetReflection();
+  const pb::OneofDescriptor* actions = v1::Command::descriptor()->FindOneofByName("action");
+  const pb::FieldDescriptor* action = fields.GetOneofFieldDescriptor(command, actions);
+  if (action == nullptr) return std::nullopt;
+  const pb::FieldDescriptor* character = action->message_type()->FindFieldByName("character");
+  if (character == nullptr) return std::nullopt;
+  const pb::Message& message = fields.GetMessage(command, action);
+  const std::uint32_t number = message.GetReflection()->GetUInt32(message, character);
+  if (number == 0 || number == kCharacter) return std::nullopt;
+  return Answer(false, action->name() + ": there is no character " + std::to_string(number) +
+                           "; this server has character " + std::to_string(kCharacter));
 }
 
 v1::CommandResult Answer(bool ok, const std::string& message) {

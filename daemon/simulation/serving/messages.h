@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ void AddLeaseEvents(const std::vector<std::string>& changes, std::int64_t host_n
                     v1::Events& events);
 v1::Skeletons MakeSkeletons(const std::string& world, const stream::Skeleton& skeleton);
 
+/// The refusal of a command for a character that there is not; 0 means the only one.
+std::optional<v1::CommandResult> RefuseOtherCharacter(const v1::Command& command);
 /// The answer to a command; the message says why it was not carried out.
 v1::CommandResult Answer(bool ok, const std::string& message);
 

@@ -2,6 +2,7 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
+#include "common/text/json_text.h"
 #include "common/units/units.h"
 #include "daemon/simulation/terrain/track.h"
 
@@ -201,8 +202,9 @@ Result<void> CheckGrowing(const stream::Track& track, const std::string& origin)
 }  // namespace
 
 Result<stream::Track> ParseTrack(const std::string& text, const std::string& origin) {
-  const json root = json::parse(text, nullptr, false, true);
-  if (root.is_discarded()) return InvalidData(origin + ": not JSON");
+  const auto parsed = text::ParseJson(text, origin);
+  if (!parsed) return parsed.error();
+  const auto& root = *parsed;
   if (!root.is_object()) return InvalidData(origin + ": not a JSON object");
   Fields fields(root, origin);
   if (fields.Number("version", 0, 0, 1e9) != 1) {

@@ -68,6 +68,15 @@ TEST(Observation, SaysWhichSphereIsNotSeen) {
   EXPECT_EQ(frames[1].points.at(0).confidence, 0.9);
 }
 
+TEST(Observation, ASphereOnTheHeadIsThatJoint) {
+  frames::CameraFile camera = FacingThePerson();
+  camera.spheres[1].role = stream::DeviceRole::kHead;
+  const auto frames = ToHandFrames(camera, camera.X_WC, {OneEstimate(), OneEstimate()}, 0, 0);
+  ASSERT_EQ(hands::Problem(frames[1]), "");
+  EXPECT_EQ(frames[1].points.at(0).role, stream::DeviceRole::kUnspecified);
+  EXPECT_EQ(frames[1].points.at(0).joint, stream::BodyJoint::kHead);
+}
+
 TEST(Observation, IsAsOldAsTheRowOnWhichTheSphereIs) {
   frames::CameraFile camera = FacingThePerson();
   sphere::Estimate low = OneEstimate(), high = OneEstimate();

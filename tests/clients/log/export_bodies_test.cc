@@ -77,6 +77,40 @@ TEST(MotionGatherer, AMissingFrameKeepsThePoseBeforeAndTheTime) {
   EXPECT_NE(motion->q.col(4), motion->q.col(3));
 }
 
+TEST(MotionGatherer, TheFrameThatCompletesTheTPoseIsLeftOut) {
+  MotionGatherer gatherer(Chain());
+  for (int i = 0; i < 4; ++i) {
+    v1::CharacterFrame frame = FrameAt(i / 120.0, 0.1 * i);
+    frame.mutable_characters(0)->set_valid(i > 0 && i != 2);
+    gatherer.Add(frame, static_cast<std::uint64_t>(100 + i));
+  }
+  EXPECT_EQ(gatherer.begin_ns(), 101u);
+  const auto motion = gatherer.Finish();
+  ASSERT_TRUE(motion.ok());
+  EXPECT_EQ(motion->frames(), 3) << "what is not valid later stays";
+}
+
+TEST(MotionGatherer, WithALagForcesAreThoseOfTheInstantOfThePose) {
+  MotionGatherer gatherer(Chain());
+  for (int i = 0; i < 60; ++i) {
+    v1::CharacterFrame frame = FrameAt(i / 120.0, 0);
+    v1::BodyState& body = *frame.mutable_characters(0)->mutable_body();
+    body.set_lag_s(0.1);
+    for (int side = 0; side < 2; ++side) {
+      v1::BodyFoot& foot = *body.add_feet();
+      foot.set_load_n(100 + i);
+      foot.set_cop_valid(true);
+    }
+    gatherer.Add(frame);
+  }
+  const auto forces = gatherer.Forces();
+  ASSERT_TRUE(forces.ok());
+  ASSERT_EQ(forces->size(), 60u);
+  EXPECT_EQ(gatherer.lag_s(), 0.1);
+  EXPECT_EQ((*forces)[40][0].load_n, 100 + 40 - 12) << "the pose of row 40 is 12 frames old";
+  EXPECT_EQ((*forces)[5][0].load_n, 100);
+}
+
 TEST(MotionGatherer, TheForcesStandBesideTheFramesOfTheMotion) {
   MotionGatherer gatherer(Chain());
   for (const int i : {0, 1, 2, 4, 5}) {

@@ -152,6 +152,26 @@ TEST_F(BoardsTest, AKinectSendsEachJointOnceAndSaysWhatIsHidden) {
   EXPECT_EQ(joints.size(), stream::kBodyJoints);
 }
 
+TEST_F(BoardsTest, ACapsSphereIsAboveTheHead) {
+  options_.head = "sphere";
+  options_.hand_noise_m = 0;
+  auto plan = PlanBoards(options_, {});
+  ASSERT_TRUE(plan);
+  const stream::HandFrame frame = plan->feeds.back().hands(0);
+  ASSERT_EQ(frame.points.size(), 1u);
+  EXPECT_EQ(frame.points[0].joint, stream::BodyJoint::kHead);
+  options_.hands = "kinect";
+  options_.head = "none";
+  auto kinect = PlanBoards(options_, {});
+  Eigen::Vector3d head_m = Eigen::Vector3d::Zero();
+  for (const stream::TrackedPoint& point : kinect->feeds[0].hands(0).points) {
+    if (point.joint == stream::BodyJoint::kHead) head_m = point.position_m;
+  }
+  EXPECT_NEAR(frame.points[0].position_m.z() - head_m.z(), 0.12, 0.08) << "Kinects err";
+  options_.head = "hat";
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("none or sphere"));
+}
+
 TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
   options_.hands = "leap";
   EXPECT_THAT(PlanBoards(options_, {}).error().message,

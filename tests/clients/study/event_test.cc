@@ -17,7 +17,18 @@ std::string Line(std::uint64_t number, EventKind kind, nlohmann::ordered_json fi
 TEST(JournalEvent, ReadsBackAsItWasWritten) {
   for (int i = 0; i <= static_cast<int>(EventKind::kNote); ++i) {
     const auto kind = static_cast<EventKind>(i);
-    const Event event{kind, 3, 42, {{"text", "line\nbreak \"q\" ü"}, {"value", 2.5}, {"f", true}}};
+    const Event event{kind,
+                      3,
+                      42,
+                      {{"text", "line\nbreak \"q\" ü"},
+                       {"value", 2.5},
+                       {"f", true},
+                       {"trial", "P01.wrist.test"},
+                       {"item", "fun"},
+                       {"outcome", "finished"},
+                       {"time_s", 12.5},
+                       {"failure", 1},
+                       {"kind", "curve"}}};
     const std::string line = ToLine(event);
     EXPECT_EQ(line.find('\n'), std::string::npos);
     const auto read = ParseLine(line);
@@ -43,6 +54,30 @@ TEST(JournalText, DropsATornLastLineAtWhateverByteItWasCut) {
     EXPECT_EQ(journal->torn_bytes, cut);
   }
   EXPECT_EQ(ParseJournal(whole + last, "j")->events.size(), 3u);
+}
+
+TEST(JournalText, RefusesAValueOfAnotherTypeThatWouldCountAsZero) {
+  const std::pair<const char*, const char*> kWrong[] = {
+      {R"("event": "trial_finished", "outcome": "finished", "time_s": "x"})", "time_s"},
+      {R"("event": "trial_finished", "outcome": "finished"})", "without time_s"},
+      {R"("event": "trial_finished", "time_s": 3})", "without outcome"},
+      {R"("event": "rating", "item": "fun", "value": "five"})", "value must be a number"},
+      {R"("event": "rating", "item": "fun"})", "without value"},
+      {R"("event": "failure", "failure": "1", "kind": "curve"})", "failure must be a number"},
+      {R"("event": "trial_started", "attempt": 1})", "without trial"}};
+  for (const auto& [fields, what] : kWrong) {
+    const auto journal =
+        ParseJournal(R"({"number": 1, "wall_ns": 0, )" + std::string(fields) + "\n", "j.jsonl");
+    ASSERT_FALSE(journal) << fields;
+    EXPECT_EQ(journal.error().kind, ErrorKind::kInvalidData);
+    EXPECT_THAT(journal.error().message,
+                testing::AllOf(testing::HasSubstr("j.jsonl, line 1"), testing::HasSubstr(what)));
+  }
+  const auto unknown = ParseJournal(
+      R"({"number": 1, "wall_ns": 0, "event": "trial_finished", "outcome": "device_lost", "anticipation_s": null})"
+      "\n",
+      "j.jsonl");
+  EXPECT_TRUE(unknown) << unknown.error().message;
 }
 
 TEST(JournalText, RefusesADamagedLineInTheMiddle) {

@@ -205,5 +205,25 @@ TEST_F(ReadMotionTest, AReconstructedBodyHasItsJointsFromTheTPoseOn) {
   EXPECT_THAT(ColumnOf(body, "valid"), ElementsAre(1, 0, 1));
 }
 
+TEST_F(ReadMotionTest, TwoPeopleOfOneRecordingAreNotOneTable) {
+  {
+    test::MadeRecording recording(folder_.Path("a.mcap"));
+    recording.Begin("footing-sim");
+    for (int i = 0; i < 4; ++i) {
+      v1::Tick tick = TickAt(static_cast<std::uint64_t>(i) + 1, i * kSecondNs);
+      if (i == 0) tick.mutable_skeletons()->add_skeletons()->add_links()->set_name("hips");
+      v1::Character& character = AddCharacter("", tick);
+      character.mutable_body()->set_calibrated(true);
+      character.mutable_body()->set_subject(i < 2 ? "p07" : "p08");
+      character.add_links()->mutable_orientation()->set_w(1);
+      recording.Add(tick);
+    }
+  }
+  const auto motion = Read({});
+  ASSERT_FALSE(motion.ok());
+  EXPECT_EQ(motion.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(motion.error().message, testing::HasSubstr("p07 and p08"));
+}
+
 }  // namespace
 }  // namespace footing::bids

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ using testing::Not;
 
 struct Options {
   int trials = 3;
+  std::uint64_t seed = 1;
   double rate_hz = 50;
   double seconds = 0;
   std::string gait = "walk";
@@ -27,6 +29,7 @@ struct Program {
   Program() {
     CLI::App* run = app->add_subcommand("run", "Run the trials");
     run->add_option("--trials", options.trials, "Number of trials");
+    run->add_option("--seed", options.seed, "Seed");
     run->add_option("--rate-hz", options.rate_hz, "Rate, Hz")->check(CLI::Range(0.25, 100.0));
     run->add_option("--gait", options.gait, "Gait")->check(CLI::IsMember({"walk", "run"}));
     run->add_option("--seconds", options.seconds, "Duration, s (default: until SIGINT)");
@@ -114,6 +117,26 @@ TEST(Parse, ListsTheSubcommandsWhenAnOptionIsGivenWithoutOne) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(ExitCode(program, {"--of", "nothing"}), 2);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("there are: run list"));
+}
+
+TEST(Parse, TakesNoNumberThatIsNotFinite) {
+  for (const char* word : {"nan", "NaN", "inf", "-inf"}) {
+    for (const char* option : {"--rate-hz", "--seconds"}) {
+      Program program;
+      testing::internal::CaptureStderr();
+      EXPECT_EQ(ExitCode(program, {"run", option, word}), 2) << option << " " << word;
+      EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr(option));
+    }
+  }
+  Program program;
+  EXPECT_EQ(ExitCode(program, {"run", "--seconds", "1e300"}), 0);
+}
+
+TEST(Parse, TakesNoNegativeNumberWhereThereIsNone) {
+  Program negative, positive;
+  EXPECT_EQ(ExitCode(negative, {"run", "--seed", "-1"}), 2);
+  EXPECT_EQ(ExitCode(positive, {"run", "--seed", "18446744073709551615", "--trials", "-2"}), 0);
+  EXPECT_EQ(positive.options.seed, 18446744073709551615u);
 }
 
 TEST(Parse, ReportsAValueThatIsNotANumberInOneLine) {

@@ -163,7 +163,12 @@ TEST(CameraFile, ErrorsNameFileKeyAndWhatIsAllowed) {
   EXPECT_FALSE(ParseCameraFile("[1", "x"));
   EXPECT_FALSE(
       ParseCameraFile(R"({"spheres": [{"role": "left_hand", "colour_dn": [9, 9, 9]}]})", "x"));
-  EXPECT_FALSE(ParseCameraFile(R"({"spheres": [{"role": "tail", "colour_dn": [9, 90, 9]}]})", "x"));
+  const std::pair<const char*, bool> roles[] = {{"head", true}, {"trunk", false}, {"tail", false}};
+  for (const auto& [role, fits] : roles) {
+    const std::string spheres =
+        R"({"spheres": [{"role": ")" + std::string(role) + R"(", "colour_dn": [9, 90, 9]}]})";
+    EXPECT_EQ(ParseCameraFile(spheres, "x").ok(), fits) << role;
+  }
 }
 
 TEST(FrameFolder, ReadsFramesInTheOrderOfTheirNames) {

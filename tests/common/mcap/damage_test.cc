@@ -55,10 +55,29 @@ TEST(McapDamage, LengthsBeyondTheFileAreRefusedWithTheirOffset) {
   std::string file = SampleFile(kMessages);
   const std::size_t header_length = kMagic.size() + 1;
   for (std::size_t i = 0; i < 8; ++i) file[header_length + i] = '\xFF';
-  const Seen seen = WalkAll(file, WalkMode::kSalvage);
+  const Seen seen = WalkAll(file, WalkMode::kStrict);
   EXPECT_TRUE(seen.messages.empty());
   EXPECT_EQ(seen.end.problem_offset, kMagic.size());
   EXPECT_THAT(seen.end.problem, HasSubstr("18446744073709551615 bytes"));
+  EXPECT_EQ(WalkAll(file, WalkMode::kSalvage).messages.size(), 23u) << "all chunks are whole";
+}
+
+TEST(McapDamage, BehindAHoleTheNextWholeChunkIsFound) {
+  const std::string file = SampleFile(kMessages);
+  const std::size_t second = file.find("message 8");
+  // A block of zeros over a boundary of chunks; bytes that are gone; bytes that are too many.
+  std::string zeros = file, gone = file, more = file;
+  zeros.replace(file.find("message 10"), 120, std::string(120, '\0'));
+  gone.erase(second, 40);
+  more.insert(second, 1000, '\x05');
+  for (const std::string* damaged : {&zeros, &gone, &more}) {
+    const Seen kept = WalkAll(*damaged, WalkMode::kSalvage);
+    EXPECT_GE(kept.messages.size(), 11u) << "the two chunks that were not touched";
+    EXPECT_EQ(kept.messages.back(), SampleText(kMessages - 1));
+    EXPECT_FALSE(kept.end.complete || kept.end.cut);
+    EXPECT_FALSE(WalkAll(*damaged, WalkMode::kStrict).end.complete);
+  }
+  EXPECT_GT(WalkAll(gone, WalkMode::kSalvage).messages.size(), 16u) << "one chunk alone is lost";
 }
 
 TEST(McapDamage, NoSingleWrongByteBreaksTheWalkOrInventsMessages) {

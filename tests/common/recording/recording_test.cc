@@ -75,6 +75,39 @@ class Recording : public testing::Test {
     return values;
   }
 
+  /// Repairs the file at `path` with one bit wrong in its middle.
+  RepairReport RepairDamaged(const std::string& path) {
+    std::string bytes = Bytes(path);
+    bytes[bytes.size() / 2] ^= 1;
+    Save(Path("damaged.mcap"), bytes);
+    const auto report = Repair(Path("damaged.mcap"), Path("repaired.mcap"), "test", true);
+    EXPECT_TRUE(report.ok());
+    EXPECT_EQ(report->found.damaged_chunks, 1u);
+    return *report;
+  }
+
+  struct Numbers {
+    std::vector<std::uint32_t> ticks;
+    std::vector<v1::Gap> gaps;
+  };
+
+  static Numbers NumbersOf(const std::string& bytes) {
+    Numbers numbers;
+    std::map<std::uint16_t, std::string> topics;
+    mcap::Visitor visitor;
+    visitor.channel = [&](const mcap::Channel& c) { topics[c.id] = c.topic; };
+    visitor.message = [&](const mcap::Message& message) {
+      if (topics[message.channel_id] != "/footingd/gaps") {
+        numbers.ticks.push_back(message.sequence);
+        return;
+      }
+      numbers.gaps.emplace_back();
+      EXPECT_TRUE(numbers.gaps.back().ParseFromString(std::string(message.data)));
+    };
+    EXPECT_TRUE(mcap::Walk(bytes, visitor, mcap::WalkMode::kStrict).complete);
+    return numbers;
+  }
+
   test::TemporaryFolder folder_;
 };
 
@@ -171,6 +204,50 @@ TEST_F(Recording, RepairOfAWholeFileSaysThatNothingWasWrong) {
   EXPECT_TRUE(report->found.complete);
   EXPECT_EQ(report->messages, 30u);
   EXPECT_EQ(Bytes(Path("copy.mcap")), Bytes(Path("whole.mcap")));
+}
+
+TEST_F(Recording, RepairOfADamagedFileNamesTheTicksThatItLost) {
+  WriteMotion(Path("whole.mcap"), 450);
+  const RepairReport report = RepairDamaged(Path("whole.mcap"));
+  const Numbers numbers = NumbersOf(Bytes(Path("repaired.mcap")));
+  ASSERT_EQ(numbers.gaps.size(), 1u);
+  const v1::Gap& gap = numbers.gaps[0];
+  EXPECT_EQ(gap.reason(), v1::Gap::REASON_DAMAGED);
+  EXPECT_GT(report.missing_ticks, 50u);
+  EXPECT_EQ(gap.to_sequence() - gap.from_sequence() + 1, report.missing_ticks);
+  EXPECT_EQ(numbers.ticks.size() + report.missing_ticks, 450u);
+  for (const std::uint32_t tick : numbers.ticks) {
+    EXPECT_TRUE(tick < gap.from_sequence() || tick > gap.to_sequence()) << tick;
+  }
+}
+
+TEST_F(Recording, RepairNamesNoTicksWhereAServerStartedAgainOrSkippedSome) {
+  Result<RecordingWriter> writer = RecordingWriter::Create(Path("whole.mcap"), {"test", false, {}});
+  int written = 0;
+  for (const int epoch : {1, 2}) {
+    ASSERT_TRUE(writer->Flush().ok());
+    ASSERT_TRUE(
+        writer->AddMetadata("session", {{"server", "footingd"}, {"epoch", std::to_string(epoch)}})
+            .ok());
+    // The second start counts from 1 again, with other numbers; every third tick has nothing new.
+    for (int k = 0; k < 150; ++k, ++written) {
+      const std::int64_t time_ns = std::int64_t{10'000'000} * written;
+      const auto number = static_cast<std::uint32_t>(epoch * 100 + k + k / 2);
+      ASSERT_TRUE(
+          writer->Write("/footingd/motion", v1::MotionSamples(), {time_ns, time_ns, number}).ok());
+    }
+  }
+  ASSERT_TRUE(writer->Finish().ok());
+  EXPECT_TRUE(NumbersOf(Bytes(Path("whole.mcap"))).gaps.empty());
+  std::string bytes = Bytes(Path("whole.mcap"));
+  const std::size_t second = bytes.find("session", bytes.find("session") + 1);
+  bytes[second - 1200] ^= 1;  // In the last chunk of the first start.
+  Save(Path("damaged.mcap"), bytes);
+  const auto report = Repair(Path("damaged.mcap"), Path("repaired.mcap"), "test", true);
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(report->found.damaged_chunks, 1u);
+  EXPECT_EQ(report->missing_ticks, 0u);
+  EXPECT_TRUE(NumbersOf(Bytes(Path("repaired.mcap"))).gaps.empty());
 }
 
 TEST_F(Recording, RepairRefusesWhatIsNoRecordingAndItsOwnInput) {

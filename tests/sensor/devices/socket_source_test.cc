@@ -1,6 +1,7 @@
 #include "daemon/sensor/devices/socket_source.h"
 
 #include <gmock/gmock.h>
+#include <google/protobuf/unknown_field_set.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -93,6 +94,19 @@ TEST_F(SocketSourceTest, WhatMakesNoSenseClosesItsConnectionWithOneLine) {
   EXPECT_TRUE(RunUntil([this] { return !reported_.empty(); }));
   EXPECT_FALSE(healthy->closed);
   EXPECT_EQ(attached_.size(), detached_.size() + 1);
+}
+
+TEST_F(SocketSourceTest, AMessageOfALaterVersionIsIgnoredWithOneLine) {
+  auto peer = Connect();
+  peer->Attach(0, "a");
+  v1::DeviceEnvelope later;
+  later.GetReflection()->MutableUnknownFields(&later)->AddLengthDelimited(99, "new");
+  for (int i = 0; i < 3; ++i) peer->Send(later);
+  peer->Report(0, "x");
+  EXPECT_TRUE(RunUntil([this] { return !reported_.empty(); }));
+  EXPECT_FALSE(peer->closed);
+  ASSERT_EQ(trouble_.size(), 1u);
+  EXPECT_THAT(trouble_[0], HasSubstr("does not know is ignored"));
 }
 
 TEST_F(SocketSourceTest, AnOversizedMessageEndsTheConnection) {

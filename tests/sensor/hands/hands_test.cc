@@ -82,6 +82,8 @@ TEST(Hands, EachBadValueIsRefusedAndNamed) {
          f.points[1].covariance_m2 = {-0.9e-4, 1.8e-4, 1.8e-4};
        }},
       {"role", [](HandFrame& f) { f.points[1].role = DeviceRole::kUnspecified; }},
+      {"the role head", [](HandFrame& f) { f.points[1].role = DeviceRole::kHead; }},
+      {"the role left_board", [](HandFrame& f) { f.points[1].role = DeviceRole::kLeftBoard; }},
       {"a role and a joint",
        [](HandFrame& f) { f.points[1].joint = stream::BodyJoint::kLeftKnee; }},
       {"age_ns", [](HandFrame& f) { f.age_ns = -1; }},
@@ -192,6 +194,19 @@ TEST(Refusals, AreSaidAtOnceThenOncePerTenSecondsWithTheirNumber) {
   EXPECT_FALSE(add(109.9));
   EXPECT_THAT(add(110).value_or(""), HasSubstr("3 refused"));
   EXPECT_EQ(refusals.total(), 4u);
+}
+
+TEST(Refusals, EachKindIsSaidByItselfAndNoneIsForgotten) {
+  Refusals refusals;
+  constexpr std::int64_t kSecondNs = 1'000'000'000;
+  EXPECT_TRUE(refusals.Add(kSecondNs, "a hand frame", "one"));
+  EXPECT_TRUE(refusals.Add(kSecondNs, "a contact frame", "two")) << "another sender's";
+  EXPECT_FALSE(refusals.Add(2 * kSecondNs, "a hand frame", "three"));
+  EXPECT_TRUE(refusals.Due(10 * kSecondNs).empty()) << "not yet";
+  EXPECT_THAT(refusals.Due(11 * kSecondNs),
+              testing::ElementsAre("device socket: a hand frame is refused: three (1 refused since "
+                                   "the last such line)"));
+  EXPECT_TRUE(refusals.Due(30 * kSecondNs).empty()) << "nothing since";
 }
 
 TEST(Hands, AnInsoleThatMakesNoSenseIsRefusedWithTheReason) {

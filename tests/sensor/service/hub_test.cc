@@ -14,6 +14,8 @@ namespace {
 using stream::CalibrationOrigin;
 using stream::DeviceRole;
 using stream::DeviceState;
+using testing::HasSubstr;
+using testing::Not;
 using virtual_devices::BalanceBoard;
 using virtual_devices::Wiimote;
 
@@ -120,6 +122,24 @@ TEST(Hub, RolesComeFromTheConfigThenTheWishThenTheOrder) {
   EXPECT_EQ(bench.StatusOf("bound").role, DeviceRole::kRightLeg);
   EXPECT_EQ(bench.StatusOf("too late").role, DeviceRole::kLeftLeg);
   EXPECT_EQ(bench.content.features.size(), 2u);
+}
+
+TEST(Hub, TheLogSaysWhyARequestedRoleIsNotGiven) {
+  Config config;
+  config.roles["bound"] = "main/right_leg";
+  Bench bench(config);
+  const auto line_of = [&bench](auto model, const std::string& serial, DeviceRole wish) {
+    bench.wish = wish;
+    bench.Attach(model, serial);
+    return bench.log.back();
+  };
+  EXPECT_THAT(line_of(Wiimote(1), "a", DeviceRole::kLeftHand), Not(HasSubstr("asked")));
+  EXPECT_THAT(line_of(Wiimote(2), "b", DeviceRole::kLeftHand),
+              HasSubstr("main/right_hand, not left_hand as it asked: that is taken"));
+  EXPECT_THAT(line_of(Wiimote(3), "c", DeviceRole::kLeftBoard),
+              HasSubstr("not left_board as it asked: a wiimote cannot be that"));
+  EXPECT_THAT(line_of(Wiimote(4), "bound", DeviceRole::kHead),
+              HasSubstr("not head as it asked: main/right_leg is assigned to it"));
 }
 
 TEST(Hub, ADeviceThatComesBackKeepsItsNumberAndRole) {

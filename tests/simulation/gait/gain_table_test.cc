@@ -153,7 +153,7 @@ TEST(ShippedGains, SayOnlyWhatDiffersFromTheHeader) {
     const std::string columns = text.substr(header, text.find('\n', header) - header);
     for (const GainField& field : GainFields()) {
       bool differs = false;
-      for (const Gait gait : {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump}) {
+      for (const Gait gait : stream::kGaits) {
         for (const GainSet& set : table.SetsOf(gait)) {
           differs = differs || field.Of(set.gains) != field.Of(Gains{});
         }
@@ -172,7 +172,7 @@ TEST(PrototypeGains, AreStillATableToCompareWith) {
 }
 
 TEST(ShippedGains, HaveSetsForEveryGait) {
-  for (const Gait gait : {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump}) {
+  for (const Gait gait : stream::kGaits) {
     EXPECT_FALSE(Shipped().SetsOf(gait).empty()) << stream::Name(gait);
   }
 }

@@ -14,7 +14,7 @@ namespace footing::gait {
 namespace {
 
 using stream::Gait;
-constexpr Gait kGaits[] = {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
+using stream::kGaits;
 
 /// Every arrow from `phases` that some combination of the cues takes.
 template <typename Cues, typename Phase>

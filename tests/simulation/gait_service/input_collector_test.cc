@@ -206,6 +206,24 @@ TEST(InputCollector, StaysAndNamesWhatIsMissingWhereNoRigFits) {
   EXPECT_TRUE(collector.Use({.interface = UserInterface::kArm}).ok());
 }
 
+TEST(InputCollector, AJoystickNeedsANunchuk) {
+  InputCollector collector("", {.interface = UserInterface::kWrist});
+  v1::Tick tick = StickTick();
+  const std::pair<v1::Extension, bool> extensions[] = {
+      {v1::EXTENSION_UNSPECIFIED, true},  {v1::EXTENSION_NONE, false},
+      {v1::EXTENSION_NUNCHUK, true},      {v1::EXTENSION_CLASSIC, false},
+      {v1::EXTENSION_MOTION_PLUS, false}, {v1::EXTENSION_MOTION_PLUS_NUNCHUK, true}};
+  for (const auto& [extension, fits] : extensions) {
+    tick.mutable_status()->mutable_devices(0)->set_extension(extension);
+    tick.set_snapshot(true);
+    collector.Take(tick, kMs);
+    const auto used = collector.Use({.interface = UserInterface::kJoystick});
+    EXPECT_EQ(used.ok(), fits) << v1::Extension_Name(extension);
+    if (fits) continue;
+    EXPECT_NE(used.error().message.find("Nunchuk"), std::string::npos);
+  }
+}
+
 TEST(InputCollector, AnInterfaceStaysOnTheRigThatWasNamed) {
   InputCollector collector("main", {.interface = UserInterface::kJoystick});
   v1::Tick tick = StickTick();

@@ -142,6 +142,9 @@ TEST(PoseNote, SpeaksOfInsolesToWhoWalksInThem) {
   frame = Well();
   frame.input.insoles_idle = true;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("best mode without lag"));
+  frame = Well();
+  frame.input.insoles_await = true;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("insoles need a T-pose of their own"));
 }
 
 TEST(PoseNote, AnotherPersonsWeightIsToldFromThreePercentOn) {

@@ -270,6 +270,26 @@ TEST(PoseRun, InsolesAreFollowedWhileTheyTellAndBoardsKnowThePersonWhenTheyStop)
   EXPECT_TRUE(line.frame.t_pose.complete) << "the T-pose was taken on both";
 }
 
+TEST(PoseRun, InsolesThatComeLaterAwaitATPoseOfTheirOwn) {
+  Line line;
+  for (std::size_t i = 0; i < 400; ++i) line.Step(i);
+  ASSERT_TRUE(line.frame.t_pose.complete && line.frame.valid);
+  for (std::size_t i = 400; i < 430; ++i) {
+    line.Wear(i);
+    line.Step(i);
+    ASSERT_TRUE(line.frame.t_pose.complete && line.frame.valid) << "nothing is lost";
+    EXPECT_EQ(line.frame.input.source, PoseSource::kBoards);
+    EXPECT_TRUE(line.frame.input.insoles_await);
+  }
+  for (std::size_t i = 0; i < 400; ++i) {  // The T-pose again.
+    line.Wear(i);
+    line.Step(i);
+  }
+  EXPECT_EQ(line.frame.input.source, PoseSource::kInsoles);
+  EXPECT_TRUE(line.frame.t_pose.complete);
+  EXPECT_FALSE(line.frame.input.insoles_await);
+}
+
 TEST(PoseRun, InsolesThatFallSilentLeaveAPoseThatIsLessSureByTheSecond) {
   Line line;
   const auto walk_off = [&line](std::size_t i) {

@@ -205,7 +205,9 @@ void AddFeaturesCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(result.error());
       return;
     }
-    std::cout << result->dump(shared.json ? -1 : 2) << std::endl;
+    std::cout << result->dump(shared.json ? -1 : 2, ' ', false,
+                              nlohmann::ordered_json::error_handler_t::replace)
+              << std::endl;
   });
 }
 

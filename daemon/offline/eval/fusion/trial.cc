@@ -70,7 +70,7 @@ class FusionTrial {
     seen.hands = inputs.hands;
     reconstruction::Clear(targets_);
     reconstruction::AddHandTargets(model_, seen, options_.best, targets_);
-    reconstruction::AddJointTargets(model_, inputs.joints, targets_);
+    reconstruction::AddJointTargets(model_.joints, inputs.joints, targets_);
     reconstruction::MoveOrigin(origin_m_, targets_);
     alone_.Solve(targets_);
   }

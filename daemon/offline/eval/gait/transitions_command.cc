@@ -94,7 +94,9 @@ int RunTransitions(const TransitionOptions& options, bool json) {
                                 {"p95_latency_s", NearestQuantile(latencies_s, 0.95)}};
   if (to == stream::Gait::kJump) report["leap"] = leaps.Report();
   if (json) {
-    std::printf("%s\n", report.dump().c_str());
+    std::printf(
+        "%s\n",
+        report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
   } else {
     std::printf("%s -> %s: %d of %d succeeded, %d falls, latency median %.2f s, p95 %.2f s\n",
                 options.from.c_str(), options.to.c_str(), succeeded, options.trials, falls,

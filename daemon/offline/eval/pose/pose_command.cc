@@ -91,11 +91,15 @@ Result<ordered_json> Evaluate(PoseFlags flags) {
 /// One line; a table has one for each row.
 void PrintField(const std::string& name, const ordered_json& value) {
   if (value.empty() || !value.is_array() || !value.front().is_object()) {
-    std::cout << name << ": " << value.dump() << "\n";
+    std::cout << name << ": "
+              << value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << "\n";
     return;
   }
   std::cout << name << ":\n";
-  for (const ordered_json& row : value) std::cout << "  " << row.dump() << "\n";
+  for (const ordered_json& row : value)
+    std::cout << "  " << row.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << "\n";
 }
 
 }  // namespace
@@ -126,7 +130,8 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
       }
     }
     if (shared.json) {
-      std::cout << out->dump() << "\n";
+      std::cout << out->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                << "\n";
     } else {
       for (const auto& [name, value] : out->items()) PrintField(name, value);
     }

@@ -67,7 +67,8 @@ int Run(const Options& options) {
   json["first_difference_step"] = engine.first_difference_step;
   json["last_step"] = engine.last_step;
   json["state_hash"] = std::to_string(engine.state_hash);
-  std::cout << json.dump() << std::endl;
+  std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << std::endl;
   return features.equal == features.compared && engine.equal == engine.frames ? 0 : 1;
 }
 

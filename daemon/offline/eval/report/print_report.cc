@@ -8,11 +8,16 @@ namespace footing::eval {
 
 void PrintReport(const nlohmann::ordered_json& report, bool json) {
   if (json) {
-    std::printf("%s\n", report.dump().c_str());
+    std::printf(
+        "%s\n",
+        report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
     return;
   }
   for (const auto& [name, value] : report.items()) {
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string text =
+        value.is_string()
+            ? value.get<std::string>()
+            : value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     std::printf("%-26s %s\n", name.c_str(), text.c_str());
   }
 }

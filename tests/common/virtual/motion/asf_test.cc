@@ -175,6 +175,7 @@ TEST(Amc, ErrorsSayFileLineAndWhatWasExpected) {
       {With(kAmc, "femur 0 0\n", ""), "frame 1 ends without femur"},
       {With(kAmc, "tibia 0", "tibia 0\ntibia 0"), "a second tibia"},
       {With(kAmc, "1\nroot", "one\nroot"), "expected the number of a frame"},
+      {With(kAmc, "2\nroot", "5\nroot"), "frame 5 follows frame 1; frames are missing"},
   };
   for (const auto& row : kRows) {
     const auto motion = ParseAmc(row.text, "leg.amc", asf);

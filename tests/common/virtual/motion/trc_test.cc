@@ -64,6 +64,10 @@ TEST(Trc, ErrorsSayFileLineAndWhatWasExpected) {
       {TrcWith(kTrc, "100\t100", "0\t100"), "expected DataRate"},
       {TrcWith(kTrc, "1501", "15o1"), "line 8: marker C7: expected a number, found '15o1'"},
       {TrcWith(kTrc, "2\t1.51", "2\tx"), "expected a frame number and a time"},
+      {TrcWith(kTrc, "1.51", "1.53"), "line 8: the time 1.53 s is not a frame of DataRate after"},
+      {TrcWith(kTrc, "1.51", "1.49"), "frames are missing or in another order"},
+      {TrcWith(kTrc, "100\t100", "200\t100"), "or DataRate is wrong"},
+      {TrcWith(kTrc, "100\t2\t2", "100\t897\t2"), "ends after frame 2, and NumFrames is 897"},
       {std::string(kTrc).substr(0, std::string(kTrc).find("\n1\t1.5")), "no frame"},
   };
   for (const auto& row : kRows) {
