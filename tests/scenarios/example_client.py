@@ -31,7 +31,7 @@ def main():
         stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation)
         stage.wait_for_socket(stage.simulation)
         other = client(stage.simulation)
-        assert other.returncode == 1 and "no channels motion, boards" in other.stderr, other
+        assert other.returncode == 1 and "no channels boards, motion" in other.stderr, other
         absent = client(stage.sensor)
         assert absent.returncode == 1 and "error:" in absent.stderr and "start footingd" in absent.stderr, absent
         unspoken = client("tls:127.0.0.1:7431")

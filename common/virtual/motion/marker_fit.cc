@@ -23,6 +23,7 @@ using body::PointTarget;
 constexpr Eigen::Index kCalibrationFrames = 60;  // That place the markers on the segments.
 constexpr int kRounds = 3;                       // Of poses from places and places from poses.
 constexpr std::size_t kLeastMarkers = 10;        // Of a frame.
+constexpr double kLongestHeldS = 1;              // A pose, in place of those not seen.
 constexpr double kLeastSine = 0.17;              // Of a limb that counts as bent: 10 degrees.
 // What a joint costs to move, m/rad: limbs hardly anything from the frame before; of the back, the
 // neck, the shoulder girdle and what lies beyond the last markers, a centimetre for a large bend.
@@ -277,6 +278,7 @@ Result<MarkerFit> FitMarkers(const MarkerTracks& tracks, const MarkerFitOptions&
   const MarkerTracks& still = options.still != nullptr ? *options.still : tracks;
   const auto set = FindMarkerSet(still, options.set);
   if (!set) return set.error();
+  if (const auto seen = CheckSeen(tracks, kLeastMarkers, kLongestHeldS); !seen) return seen.error();
   auto lengths = FitLengths(still, *set, options.sex);
   if (!lengths) return lengths.error();
   MarkerFit out;

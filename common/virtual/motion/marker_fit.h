@@ -41,8 +41,8 @@ struct MarkerFit {
 /// Fits a standard person to markers in W (z up): lengths of limbs, hips, shoulders and trunk from
 /// the joint centres (joint_centres.h), each marker fixed to the segment on which it keeps still
 /// best, then, frame by frame, the pose whose markers come nearest to those seen in the sense of
-/// least squares. Frames with fewer than ten markers keep the pose before. An error says what is
-/// missing.
+/// least squares. Frames with fewer than ten markers keep the pose before, for a second at most. An
+/// error says what is missing.
 Result<MarkerFit> FitMarkers(const MarkerTracks& tracks, const MarkerFitOptions& options = {});
 
 /// The standard person with the lengths that lie between the joint centres of these frames

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/body/y_up.h"
+#include "common/text/number.h"
 
 namespace footing::motion {
 
@@ -13,6 +14,21 @@ int FindMarker(const MarkerTracks& tracks, std::string_view name) {
     if (tracks.names[i] == name) return static_cast<int>(i);
   }
   return -1;
+}
+
+Result<void> CheckSeen(const MarkerTracks& tracks, std::size_t least, double longest_s) {
+  Eigen::Index last = -1;  // Frame with enough of them.
+  for (Eigen::Index frame = 0; frame < tracks.frames(); ++frame) {
+    const auto seen = std::count_if(tracks.p.begin(), tracks.p.end(),
+                                    [&](const auto& track) { return Seen(track.col(frame)); });
+    if (static_cast<std::size_t>(seen) >= least) last = frame;
+    if (static_cast<double>(frame - last) <= longest_s * tracks.rate_hz) continue;
+    const double from_s = tracks.start_s + static_cast<double>(last + 1) / tracks.rate_hz;
+    return InvalidData("fewer than " + std::to_string(least) + " markers are seen for more than " +
+                       text::Fixed(longest_s, 1) + " s from " + text::Fixed(from_s, 2) +
+                       " s on; cut the trial there");
+  }
+  return {};
 }
 
 FileAxes GuessAxes(const MarkerTracks& tracks) {

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/result/result.h"
+
 namespace footing::motion {
 
 /// Marker places through time, at equal steps, in the axes of the file they come from.
@@ -22,6 +24,10 @@ struct MarkerTracks {
 int FindMarker(const MarkerTracks& tracks, std::string_view name);
 
 inline bool Seen(const Eigen::Vector3d& p) { return p.allFinite(); }
+
+/// InvalidData where fewer than `least` markers are seen for longer than `longest_s`: what stands
+/// in for a pose there is none.
+Result<void> CheckSeen(const MarkerTracks& tracks, std::size_t least, double longest_s);
 
 /// Axes of a file in those of W (x ahead, y left, z up).
 enum class FileAxes {

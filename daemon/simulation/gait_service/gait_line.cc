@@ -108,7 +108,8 @@ Result<void> GaitLine::SetInterface(const transport::SessionInfo& who,
       own ? Result<std::string>(message.table())
           : config::ReadDataFile(mapping::MappingFileOf(options.interface), data_folder_);
   if (!table) return table.error();
-  const auto made = mapping::AnyInterface::Create(options, *table);
+  const std::string what = std::string("the table of ") + stream::Name(options.interface);
+  const auto made = mapping::AnyInterface::Create(options, *table, own ? what : "");
   if (!made) return made.error();
   if (const auto done = input_.SetInterface(options, *made); !done) return done;
   effective_.SetInterface(input_.interface_number(), options, *table,

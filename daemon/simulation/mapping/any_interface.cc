@@ -65,9 +65,9 @@ std::uint32_t MissingRoles(const InterfaceOptions& options, std::uint32_t presen
   return stick ? 0 : needed & ~present;
 }
 
-Result<AnyInterface> AnyInterface::Create(const InterfaceOptions& options,
-                                          const std::string& table) {
-  const std::string origin = MappingFileOf(options.interface);
+Result<AnyInterface> AnyInterface::Create(const InterfaceOptions& options, const std::string& table,
+                                          const std::string& from) {
+  const std::string origin = from.empty() ? MappingFileOf(options.interface) : from;
   switch (options.interface) {
     case UserInterface::kUnspecified:
       break;

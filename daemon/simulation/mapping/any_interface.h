@@ -30,9 +30,10 @@ std::uint32_t MissingRoles(const InterfaceOptions& options, std::uint32_t presen
 /// One of the interfaces. A plain value.
 class AnyInterface {
  public:
-  /// `table` is the text of MappingFileOf(options.interface). Fails with one line that names the
-  /// file and the key.
-  static Result<AnyInterface> Create(const InterfaceOptions& options, const std::string& table);
+  /// `table` is the text of MappingFileOf(options.interface), or of what `from` names. Fails with
+  /// one line that names it and the key.
+  static Result<AnyInterface> Create(const InterfaceOptions& options, const std::string& table,
+                                     const std::string& from = "");
 
   /// The command for new inputs at `time_s`; times must not decrease. A jump keeps the speed of the
   /// run-up until the character jumps: braked before, it would be shorter than a stride.

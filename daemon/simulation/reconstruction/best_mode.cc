@@ -78,7 +78,7 @@ void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output)
 Inputs BestMode::Plausible(const Inputs& inputs) const {
   Inputs plausible = skeleton_.Without(inputs);
   JointInput& head = plausible.joints[kHeadJoint];
-  if (head.valid && !IsSkeleton(plausible.joints)) {
+  if (HeadSeat::IsLone(plausible.joints)) {
     head.valid = !seat_.Seeks();
     const double seat_m = seat_.found() ? kSeatedSdM : kUnseatedSdM;
     head.sd_m = (head.sd_m.cwiseAbs2().array() + seat_m * seat_m).sqrt();

@@ -7,8 +7,14 @@ namespace {
 
 constexpr double kFarthestSeatM = 0.35;  // Further off is a camera that was never placed.
 constexpr double kLeastShare = 0.5;
+constexpr double kSureSdM = 0.025;  // Root mean square of the axes.
 
 }  // namespace
+
+bool HeadSeat::IsLone(const JointInputs& joints) {
+  const JointInput& head = joints[kHeadJoint];
+  return head.valid && head.sd_m.squaredNorm() <= 3 * kSureSdM * kSureSdM && !IsSkeleton(joints);
+}
 
 void HeadSeat::Start(const body::Point& middle) {
   *this = {};
@@ -18,8 +24,8 @@ void HeadSeat::Start(const body::Point& middle) {
 void HeadSeat::See(const JointInputs& joints, const body::Kinematics& at, double step_s) {
   if (!Seeks()) return;
   sought_s_ += step_s;
-  const JointInput& head = joints[kHeadJoint];
-  if (head.valid && !IsSkeleton(joints)) {
+  if (IsLone(joints)) {
+    const JointInput& head = joints[kHeadJoint];
     const auto joint = static_cast<std::size_t>(middle_.joint);
     seen_s_ += step_s;
     sum_J_m_ += step_s * (at.R_WJ[joint].transpose() * (head.p_W_m - at.p_WJ[joint]));

@@ -20,12 +20,16 @@ class HeadSeat {
  public:
   static constexpr double kSeconds = 0.5;
 
+  /// Whether a head is seen by itself, outside a skeleton, and surely enough to have a seat: one
+  /// that a tracker shows to a few centimetres, such as a Kinect's, is the middle of the head.
+  static bool IsLone(const JointInputs& joints);
+
   /// `middle`: the middle of the head on the body.
   void Start(const body::Point& middle);
   /// Whether it is being found: meanwhile the head does not count for the pose.
   bool Seeks() const { return sought_s_ < kSeconds; }
-  /// A frame of it: joints in W, and the pose that boards and hands alone show, in W. A head that
-  /// is not seen, or is part of a skeleton, adds nothing.
+  /// A frame of it: joints in W, and the pose that boards and hands alone show, in W. One that
+  /// is not lone adds nothing.
   void See(const JointInputs& joints, const body::Kinematics& at, double step_s);
 
   /// The point that is seen: that of the seat where it was seen for most of the time, within 35 cm

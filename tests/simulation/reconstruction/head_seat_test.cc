@@ -70,19 +70,22 @@ TEST_F(HeadSeatTest, ACapIsWhereThePoseHasItAfterTheTPose) {
   EXPECT_EQ(seat.point().p_J_m, middle.p_J_m);
 }
 
-TEST_F(HeadSeatTest, ASkeletonsHeadOneSeldomSeenAndOneFarOffHaveNoSeat) {
+TEST_F(HeadSeatTest, ASkeletonsHeadAndOneSeldomSeenFarOffOrRoughHaveNoSeat) {
   const body::Point& middle = model.joints[kHeadJoint];
-  HeadSeat skeletons, seldom, far;
-  for (HeadSeat* seat : {&skeletons, &seldom, &far}) seat->Start(middle);
+  HeadSeat skeletons, seldom, far, rough;
+  for (HeadSeat* seat : {&skeletons, &seldom, &far, &rough}) seat->Start(middle);
   for (int i = 0; far.Seeks(); ++i) {
     JointInputs joints = Sphere(model.t_pose_at, kCapM);
     joints[kHeadJoint].valid = i % 3 == 0;
     seldom.See(joints, model.t_pose_at, 0.01);
     for (JointInput& joint : joints) joint.valid = true;
     skeletons.See(joints, model.t_pose_at, 0.01);
+    JointInputs kinect = Sphere(model.t_pose_at, 0.04);
+    kinect[kHeadJoint].sd_m.setConstant(0.043);
+    rough.See(kinect, model.t_pose_at, 0.01);
     far.See(Sphere(model.t_pose_at, 0.4), model.t_pose_at, 0.01);
   }
-  for (HeadSeat* seat : {&skeletons, &seldom, &far}) {
+  for (HeadSeat* seat : {&skeletons, &seldom, &far, &rough}) {
     EXPECT_FALSE(seat->Seeks() || seat->found());
     EXPECT_EQ(seat->point().p_J_m, middle.p_J_m);
   }

@@ -199,6 +199,20 @@ TEST(MarkerFit, AMarkerThatIsHiddenForAWhileHardlyMatters) {
   EXPECT_LT((here.p_WJ[ankle] - there.p_WJ[ankle]).norm(), 0.01);
 }
 
+TEST(MarkerFit, WhatIsNotSeenForLongIsNoMotion) {
+  Made made;
+  MarkerTracks& tracks = made.tracks;
+  ASSERT_GT(tracks.frames(), 30);
+  tracks.rate_hz = 10;
+  for (auto& track : tracks.p) track.middleCols(5, 10).setConstant(std::nan(""));
+  EXPECT_TRUE(FitMarkers(tracks).ok()) << "a second is bridged";
+  for (auto& track : tracks.p) track.middleCols(5, 12).setConstant(std::nan(""));
+  const auto gap = FitMarkers(tracks);
+  ASSERT_FALSE(gap.ok());
+  EXPECT_EQ(gap.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(gap.error().message, HasSubstr("for more than 1.0 s from "));
+}
+
 TEST(MarkerFit, ErrorsSayWhatIsMissing) {
   Made made;
   EXPECT_THAT(FitMarkers(made.tracks, {.set = "plug-in-gait"}).error().message,
