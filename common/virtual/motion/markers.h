@@ -25,8 +25,8 @@ int FindMarker(const MarkerTracks& tracks, std::string_view name);
 
 inline bool Seen(const Eigen::Vector3d& p) { return p.allFinite(); }
 
-/// InvalidData where fewer than `least` markers are seen for longer than `longest_s`: what stands
-/// in for a pose there is none.
+/// InvalidData where fewer than `least` markers are seen for longer than `longest_s`: the pose held
+/// there is not a motion.
 Result<void> CheckSeen(const MarkerTracks& tracks, std::size_t least, double longest_s);
 
 /// Axes of a file in those of W (x ahead, y left, z up).
