@@ -66,9 +66,10 @@ class Copier {
   };
 
   /// Writes a Gap when damage lies between this message and its server's last one, and the numbers
-  /// of their ticks do not follow each other.
+  /// of their ticks do not follow each other. Files of others may number otherwise.
   void NoteMissing(const mcap::Message& message) {
     const std::string& name = servers_of_[message.channel_id];
+    if (epochs_.count(name) == 0) return;
     const auto [found, fresh] = servers_.try_emplace(name);
     Server& server = found->second;
     if (!fresh && server.damage < damage_ && message.sequence > server.last.sequence + 1) {
@@ -95,7 +96,7 @@ class Copier {
     const auto name = metadata.values.find("server");
     const auto epoch = metadata.values.find("epoch");
     if (name == metadata.values.end() || epoch == metadata.values.end()) return;
-    std::string& known = epochs_[name->second];
+    std::string& known = epochs_["/" + name->second];
     if (known != epoch->second) servers_.erase("/" + name->second);
     known = epoch->second;
   }
@@ -124,7 +125,7 @@ class Copier {
   std::uint16_t gaps_channels_ = 0;
   std::map<std::uint16_t, std::string> servers_of_;  ///< "/SERVER", by channel.
   std::map<std::string, Server> servers_;
-  std::map<std::string, std::string> epochs_;  ///< By server.
+  std::map<std::string, std::string> epochs_;  ///< By server, of its newest session.
 };
 
 }  // namespace

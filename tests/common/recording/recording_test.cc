@@ -28,9 +28,13 @@ class Recording : public testing::Test {
   std::string Path(const std::string& name) const { return folder_.Path(name); }
 
   /// Sample k of device 3, received at k * 10 ms, on /footingd/motion, one a tick.
-  void WriteMotion(const std::string& path, int ticks) {
+  void WriteMotion(const std::string& path, int ticks, bool of_a_server = false) {
     Result<RecordingWriter> writer = RecordingWriter::Create(path, {"test", false, {}});
     ASSERT_TRUE(writer.ok()) << writer.error().message;
+    const mcap::TextMap session{{"server", "footingd"}, {"epoch", "7"}};
+    if (of_a_server) {
+      ASSERT_TRUE(writer->AddMetadata("session", session).ok());
+    }
     for (int k = 0; k < ticks; ++k) {
       const std::int64_t time_ns = std::int64_t{10'000'000} * k;
       v1::MotionSamples motion;
@@ -207,7 +211,7 @@ TEST_F(Recording, RepairOfAWholeFileSaysThatNothingWasWrong) {
 }
 
 TEST_F(Recording, RepairOfADamagedFileNamesTheTicksThatItLost) {
-  WriteMotion(Path("whole.mcap"), 450);
+  WriteMotion(Path("whole.mcap"), 450, true);
   const RepairReport report = RepairDamaged(Path("whole.mcap"));
   const Numbers numbers = NumbersOf(Bytes(Path("repaired.mcap")));
   ASSERT_EQ(numbers.gaps.size(), 1u);
@@ -219,6 +223,12 @@ TEST_F(Recording, RepairOfADamagedFileNamesTheTicksThatItLost) {
   for (const std::uint32_t tick : numbers.ticks) {
     EXPECT_TRUE(tick < gap.from_sequence() || tick > gap.to_sequence()) << tick;
   }
+}
+
+TEST_F(Recording, RepairAddsNothingToAFileThatIsOfNoServer) {
+  WriteMotion(Path("whole.mcap"), 450);
+  EXPECT_EQ(RepairDamaged(Path("whole.mcap")).missing_ticks, 0u);
+  EXPECT_TRUE(NumbersOf(Bytes(Path("repaired.mcap"))).gaps.empty());
 }
 
 TEST_F(Recording, RepairNamesNoTicksWhereAServerStartedAgainOrSkippedSome) {
