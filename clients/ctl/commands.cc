@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 #include "common/transport/address_or_default.h"
 
 namespace footing::ctl {
@@ -19,9 +20,7 @@ Result<std::unique_ptr<Session>> Open(const Shared& shared, std::vector<std::str
 
 void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared) {
   using nlohmann::ordered_json;
-  std::cout << (shared.json ? out.dump(-1, ' ', false, ordered_json::error_handler_t::replace)
-                            : text)
-            << std::endl;
+  std::cout << (shared.json ? text::ToText(out) : text) << std::endl;
 }
 
 void AddRemark(const v1::CommandResult& result, nlohmann::ordered_json& out, std::string& text) {

@@ -15,6 +15,7 @@
 #include "clients/log/record.h"
 #include "common/cli/cli.h"
 #include "common/recording/repair.h"
+#include "common/text/json_text.h"
 #include "common/transport/address.h"
 
 namespace footing::log_client {
@@ -35,7 +36,7 @@ std::string EntryLine(const ordered_json& entry) {
 /// One JSON object, or one "name: value" line each, a list with a line for each entry.
 void Print(const ordered_json& out, bool json) {
   if (json) {
-    std::cout << out.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << std::endl;
+    std::cout << text::ToText(out) << std::endl;
     return;
   }
   for (const auto& [name, value] : out.items()) {

@@ -6,6 +6,7 @@
 #include "clients/log/commands.h"
 #include "clients/log/contents.h"
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
 
@@ -132,8 +133,7 @@ void AddInfoCommand(CLI::App& app, Shared& shared) {
       return;
     }
     if (shared.json) {
-      std::cout << ToJson(*contents).dump(-1, ' ', false, ordered_json::error_handler_t::replace)
-                << std::endl;
+      std::cout << text::ToText(ToJson(*contents)) << std::endl;
     } else {
       PrintText(*contents);
     }

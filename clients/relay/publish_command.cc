@@ -10,6 +10,7 @@
 #include "clients/relay/service/metrics.h"
 #include "clients/relay/service/publisher.h"
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 
 namespace footing::relay {
 namespace {
@@ -125,9 +126,7 @@ void AddPublishCommand(CLI::App& app, Shared& shared) {
                                          {"missing", report->missing},
                                          {"published", report->published},
                                          {"dropped", report->dropped}};
-    if (shared.json)
-      std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                << std::endl;
+    if (shared.json) std::cout << text::ToText(json) << std::endl;
   });
 }
 

@@ -7,6 +7,7 @@
 #include "clients/relay/service/edge.h"
 #include "clients/relay/service/metrics.h"
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 #include "common/transport/exposure.h"
 
 namespace footing::relay {
@@ -133,9 +134,7 @@ void AddServeCommand(CLI::App& app, Shared& shared) {
                                          {"left_out", report->left_out},
                                          {"dropped", report->dropped},
                                          {"accepted", report->accepted}};
-    if (shared.json)
-      std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                << std::endl;
+    if (shared.json) std::cout << text::ToText(json) << std::endl;
   });
 }
 

@@ -13,6 +13,7 @@
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
 #include "common/log/log.h"
+#include "common/text/json_text.h"
 #include "common/transport/address_or_default.h"
 #include "common/transport/socket.h"
 #include "common/units/units.h"
@@ -61,10 +62,7 @@ struct DialectFlags {
 int Receive(const ReceiverOptions& options, bool json) {
   const auto done = RunReceiver(options);
   if (!done) return cli::Report(done.error());
-  std::cout << (json ? done->statistics.dump(-1, ' ', false,
-                                             nlohmann::ordered_json::error_handler_t::replace) +
-                           "\n"
-                     : ToText(done->statistics))
+  std::cout << (json ? text::ToText(done->statistics) + "\n" : ToText(done->statistics))
             << std::flush;
   return done->published ? 0 : cli::Report(done->published.error());
 }

@@ -47,19 +47,15 @@ std::vector<int> ShownJoints(const body::Body& body) {
   return joints;
 }
 
-Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s) {
-  return body::Place(body::Fist(stage.scene.body, side), KinematicsAt(stage, t_s));
+Eigen::Vector3d PlaceAt(const Stage& stage, const body::Point& point, double t_s) {
+  return body::Place(point, KinematicsAt(stage, t_s));
 }
 
-Eigen::Vector3d CapAt(const Stage& stage, double t_s) {
-  const body::Body& body = stage.scene.body;
-  body::Point sphere = body::SkeletonPoints(body)[body::IndexOf(stream::BodyJoint::kHead)];
-  body::Kinematics upright(body.skeleton);
-  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), upright);
-  sphere.p_J_m += upright.R_WJ[static_cast<std::size_t>(sphere.joint)].transpose() *
-                  Eigen::Vector3d(0, 0, kCapM);
-  return body::Place(sphere, KinematicsAt(stage, t_s));
+Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s) {
+  return PlaceAt(stage, body::Fist(stage.scene.body, side), t_s);
 }
+
+body::Point CapSphere(const Stage& stage) { return body::AboveHead(stage.scene.body, kCapM); }
 
 namespace {
 
@@ -97,13 +93,14 @@ Feed HandFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t 
 Feed HeadFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
   Feed feed;
   feed.rate_hz = kTruthRateHz;
-  feed.hands = [stage, noise_m, random = noise::Random(seed)](double t_s) mutable {
+  feed.hands = [stage, noise_m, sphere = CapSphere(*stage),
+                random = noise::Random(seed)](double t_s) mutable {
     stream::HandFrame frame;
     frame.tracker = "cap";
     frame.simulated = true;
     stream::TrackedPoint& point = frame.points.emplace_back();
     point.joint = stream::BodyJoint::kHead;
-    point.position_m = CapAt(*stage, t_s);
+    point.position_m = PlaceAt(*stage, sphere, t_s);
     for (double& value : point.position_m) value += noise_m * random.Normal();
     point.sd_m.setConstant(std::max(noise_m, kLeastSdM));
     point.confidence = 1;

@@ -6,6 +6,7 @@
 
 #include "clients/stream/body_stage.h"
 #include "clients/stream/plan.h"
+#include "common/body/points.h"
 
 namespace footing::stream_client {
 
@@ -27,8 +28,11 @@ Feed PoseFeed(std::shared_ptr<const Stage> stage);
 /// The middle of the fist of side 0 (left) or 1, in W.
 Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s);
 
-/// The sphere of a cap, 12 cm above the middle of the head, in W.
-Eigen::Vector3d CapAt(const Stage& stage, double t_s);
+/// A point of the body, in W.
+Eigen::Vector3d PlaceAt(const Stage& stage, const body::Point& point, double t_s);
+
+/// The sphere of a cap, 12 cm above the middle of the head.
+body::Point CapSphere(const Stage& stage);
 
 /// Ends a plan of what is under the feet: the fists where `hands` is "move" or "kinect", the true
 /// pose, and how long it takes.

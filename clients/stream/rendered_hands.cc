@@ -13,8 +13,10 @@
 #include <csignal>
 #include <cstring>
 #include <thread>
+#include <vector>
 
 #include "clients/stream/feeds.h"
+#include "common/body/points.h"
 #include "common/exchange/flag.h"
 #include "common/frames/netpbm.h"
 #include "common/virtual/camera/render.h"
@@ -108,28 +110,27 @@ Eigen::Vector3d ShownColour(std::uint32_t rgb) {
   return Eigen::Vector3d(16, 15, 17) + sensor_dn * light / 255;
 }
 
-/// Where the body has the sphere of that role, in W.
-Eigen::Vector3d SphereAt(const Stage& stage, stream::DeviceRole role, double t_s) {
-  if (role == stream::DeviceRole::kHead) return CapAt(stage, t_s);
-  return FistAt(stage, role == stream::DeviceRole::kLeftHand ? 0 : 1, t_s);
+/// Where on the body the sphere of that role is.
+body::Point SphereOf(const Stage& stage, stream::DeviceRole role) {
+  if (role == stream::DeviceRole::kHead) return CapSphere(stage);
+  return body::Fist(stage.scene.body, role == stream::DeviceRole::kLeftHand ? 0 : 1);
 }
 
 /// A sphere where it is when the row on which it appears is exposed. It rests meanwhile: at
 /// the exposure of 1 ms that is meant here, a hand moves by a millimetre.
 virtual_camera::Ball BallOn(const Stage& stage, const frames::CameraFile& camera,
                             const virtual_camera::Scene& scene, std::size_t sphere,
-                            const SphereLights& lights, double t_s) {
-  const stream::DeviceRole role = camera.spheres[sphere].role;
+                            const body::Point& point, const SphereLights& lights, double t_s) {
   const Eigen::Isometry3d X_CW = camera.X_WC->inverse();
   virtual_camera::Ball ball;
-  const auto light = lights.find(role);
+  const auto light = lights.find(camera.spheres[sphere].role);
   ball.colour_dn =
       light == lights.end() ? camera.spheres[sphere].target.colour_dn : ShownColour(light->second);
   ball.radius_m = camera.spheres[sphere].target.radius_m;
-  ball.p_C_m = X_CW * SphereAt(stage, role, t_s);
+  ball.p_C_m = X_CW * PlaceAt(stage, point, t_s);
   if (ball.p_C_m.z() <= 0.1) return ball;  // Behind the camera: not drawn.
   const double row_px = virtual_camera::Project(scene.lens, ball.p_C_m).y();
-  ball.p_C_m = X_CW * SphereAt(stage, role, t_s + virtual_camera::RowTime(scene, row_px));
+  ball.p_C_m = X_CW * PlaceAt(stage, point, t_s + virtual_camera::RowTime(scene, row_px));
   return ball;
 }
 
@@ -156,10 +157,13 @@ Result<Feed> RenderedHandsFeed(std::shared_ptr<const Stage> stage, const std::st
     return Failure("cannot write frames to " + fifo + ": " + std::string(std::strerror(errno)) +
                    "; make it with mkfifo");
   const auto renderer = std::make_shared<Renderer>(descriptor, seed);
+  std::vector<body::Point> points;
+  for (const frames::HeldSphere& held : camera->spheres)
+    points.push_back(SphereOf(*stage, held.role));
   Feed feed;
   feed.rate_hz = camera->rate_hz;
-  feed.frames = [stage, camera, renderer](double t_s, std::int64_t exposed_ns,
-                                          const SphereLights& lights) {
+  feed.frames = [stage, camera, renderer, points](double t_s, std::int64_t exposed_ns,
+                                                  const SphereLights& lights) {
     virtual_camera::Scene scene;
     scene.lens = ToLens(camera->lens);
     scene.sensor.readout_s = camera->readout_s;
@@ -167,7 +171,7 @@ Result<Feed> RenderedHandsFeed(std::shared_ptr<const Stage> stage, const std::st
     scene.sensor.read_noise_dn = camera->settings.noise.read_dn;
     scene.sensor.dn_per_electron = camera->settings.noise.dn_per_electron;
     for (std::size_t i = 0; i < camera->spheres.size(); ++i)
-      scene.balls.push_back(BallOn(*stage, *camera, scene, i, lights, t_s));
+      scene.balls.push_back(BallOn(*stage, *camera, scene, i, points[i], lights, t_s));
     renderer->Take(scene, exposed_ns);
   };
   return feed;

@@ -11,6 +11,7 @@
 #include "clients/study/ranges/ranges.h"
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
+#include "common/text/json_text.h"
 
 namespace footing::study {
 namespace {
@@ -160,10 +161,7 @@ void Finish(const Result<Answer>& result, Shared& shared) {
     return;
   }
   using nlohmann::ordered_json;
-  std::cout << (shared.json
-                    ? result->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)
-                    : result->text)
-            << std::endl;
+  std::cout << (shared.json ? text::ToText(result->json) : result->text) << std::endl;
 }
 
 void AddProtocolOptions(CLI::App& command, ProtocolOptions& options) {

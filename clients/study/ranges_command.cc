@@ -47,8 +47,7 @@ Result<void> Check(const RangesOptions& options) {
     return UsageError("--participant CODE is missing: a code, never a name");
   }
   if (!plan::IsCode(options.participant)) {
-    return UsageError("--participant \"" + options.participant +
-                      "\": a code is 1 to 16 letters, digits, - and _, and never a person's name");
+    return UsageError("--participant \"" + options.participant + "\": " + plan::kCodeRule);
   }
   if (options.to_s != 0 && options.to_s <= options.from_s) {
     return UsageError("--to must be later than --from");

@@ -62,4 +62,12 @@ std::array<Point, stream::kBodyJoints> SkeletonPoints(const Body& body) {
   return points;
 }
 
+Point AboveHead(const Body& body, double above_m) {
+  Point point = SkeletonPoints(body)[IndexOf(BodyJoint::kHead)];
+  const Kinematics at = InTPose(body);
+  point.p_J_m +=
+      at.R_WJ[static_cast<std::size_t>(point.joint)].transpose() * Eigen::Vector3d(0, 0, above_m);
+  return point;
+}
+
 }  // namespace footing::body

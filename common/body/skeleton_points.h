@@ -19,4 +19,7 @@ constexpr std::size_t IndexOf(stream::BodyJoint joint) {
 /// to the trunk's nearest joint; the others are landmarks.
 std::array<Point, stream::kBodyJoints> SkeletonPoints(const Body& body);
 
+/// The point fixed to the head that is so far above its middle in the T-pose.
+Point AboveHead(const Body& body, double above_m);
+
 }  // namespace footing::body

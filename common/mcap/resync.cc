@@ -1,23 +1,13 @@
 #include "common/mcap/resync.h"
 
-#include "common/mcap/crc.h"
+#include "common/mcap/checks.h"
 #include "common/mcap/decode.h"
-#include "common/mcap/records.h"
+#include "common/mcap/found_record.h"
 
 namespace footing::mcap {
 namespace {
 
 constexpr std::uint64_t kBudgetPerByte = 8;
-
-std::optional<std::string_view> BodyAt(std::string_view file, std::uint64_t offset,
-                                       std::uint8_t& opcode) {
-  if (offset > file.size()) return std::nullopt;
-  Cursor head(file.substr(offset));
-  opcode = head.U8();
-  const std::uint64_t length = head.U64();
-  if (!head.ok() || length > head.rest().size()) return std::nullopt;
-  return head.rest().substr(0, length);
-}
 
 }  // namespace
 
@@ -30,25 +20,24 @@ std::optional<std::uint64_t> Resync::WayOn(std::uint64_t offset,
 }
 
 bool Resync::CanBeRecord(std::uint64_t offset) const {
-  std::uint8_t opcode = 0;
-  return BodyAt(file_, offset, opcode).has_value() && opcode != 0;
+  const auto record = RecordAt(file_, offset);
+  return record && record->opcode != Opcode{};
 }
 
 bool Resync::IsRecord(std::uint64_t offset) const {
-  std::uint8_t opcode = 0;
-  const auto body = BodyAt(file_, offset, opcode);
-  if (!body) return false;
-  switch (static_cast<Opcode>(opcode)) {
+  const auto record = RecordAt(file_, offset);
+  if (!record) return false;
+  switch (record->opcode) {
     case Opcode::kChunk:
-      return DecodeChunk(*body).has_value();
+      return DecodeChunk(record->body).has_value();
     case Opcode::kMessageIndex:
-      return DecodeMessageIndex(*body).has_value();
+      return DecodeMessageIndex(record->body).has_value();
     case Opcode::kMetadata:
-      return DecodeMetadata(*body).has_value();
+      return DecodeMetadata(record->body).has_value();
     case Opcode::kAttachment:
-      return DecodeAttachment(*body).has_value();
+      return DecodeAttachment(record->body).has_value();
     case Opcode::kDataEnd:
-      return body->size() >= sizeof(std::uint32_t);
+      return record->body.size() >= sizeof(std::uint32_t);
     default:
       return false;
   }
@@ -58,16 +47,16 @@ std::optional<std::uint64_t> Resync::NextChunk(std::uint64_t from) {
   constexpr char kChunk = static_cast<char>(Opcode::kChunk);
   for (std::size_t at = file_.find(kChunk, from); at != std::string_view::npos;
        at = file_.find(kChunk, at + 1)) {
-    std::uint8_t opcode = 0;
-    const auto body = BodyAt(file_, at, opcode);
-    const auto chunk = body ? DecodeChunk(*body) : std::nullopt;
-    if (!chunk || !chunk->compression.empty() || chunk->uncompressed_crc == 0 ||
-        chunk->uncompressed_size != chunk->records.size() || chunk->records.empty()) {
+    const auto record = RecordAt(file_, at);
+    const auto chunk = record ? DecodeChunk(record->body) : std::nullopt;
+    // Without a CRC nothing distinguishes a chunk from other bytes.
+    if (!chunk || chunk->uncompressed_crc == 0 || chunk->records.empty() ||
+        chunk->uncompressed_size != chunk->records.size()) {
       continue;
     }
     if (chunk->records.size() > budget_) return std::nullopt;
     budget_ -= chunk->records.size();
-    if (chunk->uncompressed_crc == Crc32(0, chunk->records)) return at;
+    if (ProblemOf(chunk).empty()) return at;
   }
   return std::nullopt;
 }

@@ -4,6 +4,7 @@
 
 #include "common/mcap/crc.h"
 #include "common/mcap/decode.h"
+#include "common/mcap/found_record.h"
 
 namespace footing::mcap {
 namespace {
@@ -12,25 +13,6 @@ constexpr const char* kDamagedRecord = "a chunk with a damaged record";
 
 Error DamagedAt(std::uint64_t offset, const std::string& what) {
   return InvalidData("byte " + std::to_string(offset) + ": " + what);
-}
-
-struct FoundRecord {
-  Opcode opcode{};
-  std::string_view body;
-};
-
-/// The record at the start of the bytes; nothing when it does not fit.
-std::optional<FoundRecord> FirstRecord(std::string_view bytes) {
-  Cursor head(bytes);
-  const auto opcode = static_cast<Opcode>(head.U8());
-  const std::string_view body = head.Take(head.U64());
-  if (!head.ok()) return std::nullopt;
-  return FoundRecord{opcode, body};
-}
-
-std::optional<FoundRecord> RecordAt(std::string_view bytes, std::uint64_t offset) {
-  if (offset > bytes.size()) return std::nullopt;
-  return FirstRecord(bytes.substr(offset));
 }
 
 bool IsWhole(const Chunk& chunk) {

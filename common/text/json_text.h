@@ -11,4 +11,11 @@ namespace footing::text {
 /// that is none the error names line and column.
 Result<nlohmann::json> ParseJson(const std::string& text, const std::string& origin);
 
+/// JSON as text, on one line where `indent` is -1. Bytes that are not UTF-8, as names of files may
+/// hold, are replaced.
+template <typename Json>
+std::string ToText(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace footing::text

@@ -1,5 +1,7 @@
 #include "clients/relay/nats/requests.h"
 
+#include "common/text/json_text.h"
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -15,8 +17,7 @@ std::string Connect(const std::string& client_name, const Login& login) {
     options["pass"] = login.password;
   }
   // A name need not be UTF-8.
-  return "CONNECT " +
-         options.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\r\n";
+  return "CONNECT " + text::ToText(options) + "\r\n";
 }
 
 std::string Subscribe(const std::string& subject, std::uint64_t subscription) {

@@ -104,9 +104,7 @@ void ReadPeople(Reader& reader, Protocol& protocol) {
   reader.Texts("participants", protocol.participants, 1, 1000);
   for (const std::string& code : protocol.participants) {
     if (!IsCode(code)) {
-      reader.Fail("participants", "has \"" + code +
-                                      "\"; a code is 1 to 16 letters, digits, - and _, and never a "
-                                      "person's name");
+      reader.Fail("participants", "has \"" + code + "\"; " + kCodeRule);
     }
     if (LowerCase(code) == "lock") {
       reader.Fail("participants", "has \"" + code + "\", which is the name of the study's lock");

@@ -89,8 +89,10 @@ struct Protocol {
   double disk_mb = 500;  ///< Free space that a session needs.
 };
 
-/// A participant's code names folders and trials: 1 to 16 letters, digits, - and _.
+/// A participant's code names folders and trials; kCodeRule says of which form it is.
 bool IsCode(const std::string& code);
+inline constexpr const char* kCodeRule =
+    "a code is 1 to 16 letters, digits, - and _, and never a person's name";
 
 /// Reads a protocol; comments are allowed. `file` names it in errors, which are InvalidData and say
 /// which key has which value and what it may be.

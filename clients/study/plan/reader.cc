@@ -1,5 +1,7 @@
 #include "clients/study/plan/reader.h"
 
+#include "common/text/json_text.h"
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -30,8 +32,7 @@ void Reader::Fail(const std::string& key, const std::string& what) {
 }
 
 void Reader::Wrong(const std::string& key, const ordered_json& value, const std::string& allowed) {
-  Fail(key, "is " + value.dump(-1, ' ', false, ordered_json::error_handler_t::replace) +
-                "; it must be " + allowed);
+  Fail(key, "is " + text::ToText(value) + "; it must be " + allowed);
 }
 
 void Reader::Text(const std::string& key, std::string& value) {

@@ -1,5 +1,7 @@
 #include "clients/study/records/event.h"
 
+#include "common/text/json_text.h"
+
 #include <array>
 #include <optional>
 
@@ -90,7 +92,7 @@ std::string ToLine(const Event& event) {
   ordered_json line = {
       {"number", event.number}, {"wall_ns", event.wall_ns}, {"event", Name(event.kind)}};
   line.update(event.fields);
-  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return text::ToText(line);
 }
 
 Result<Event> ParseLine(std::string_view line) {

@@ -35,14 +35,10 @@ HeadTracker::HeadTracker(const body::Body& body, HeadDevice device, const HeadEr
     : device_(device),
       errors_(errors),
       random_(seed + kHeadSeed),
-      sphere_(body::SkeletonPoints(body)[kHeadJoint]),
+      sphere_(body::AboveHead(body, errors.above_m)),
       t_pose_off_m_(noise::NormalVector(errors.t_pose_sd_m, random_)),
       kinect_(body, seed + kHeadSeed, step_s, Unhidden()) {
-  body::Kinematics upright(body.skeleton);
-  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), upright);
-  const auto joint = static_cast<std::size_t>(sphere_.joint);
-  sphere_.p_J_m += upright.R_WJ[joint].transpose() * Eigen::Vector3d(0, 0, errors.above_m) +
-                   noise::NormalVector(errors.seat_sd_m, random_);
+  sphere_.p_J_m += noise::NormalVector(errors.seat_sd_m, random_);
 }
 
 void HeadTracker::Advance(const body::Kinematics& at, bool in_t_pose,

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
@@ -43,8 +44,7 @@ int Run(const BasisOptions& options, const Shared& shared) {
                                    {"components_9999", basis.ComponentsFor(0.9999)}};
   AppendOwn(*set, report);
   if (shared.json) {
-    std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << std::endl;
+    std::cout << text::ToText(report) << std::endl;
   } else {
     std::cout << options.model.out << ": " << basis.mean.size() << " components of "
               << trained->poses << " poses; " << basis.ComponentsFor(0.9) << " hold 90 %, "

@@ -4,6 +4,7 @@
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/text/json_text.h"
 #include "common/units/units.h"
 #include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/train/command.h"
@@ -49,8 +50,7 @@ int Run(const CascadeOptions& options, const Shared& shared) {
                                          {"validation_mse", result.validation_mse},
                                          {"seconds", seconds}};
   if (shared.json) {
-    std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << std::endl;
+    std::cout << text::ToText(report) << std::endl;
   } else {
     std::cout << options.data.model.out << ": " << result.hidden_units << " hidden units after "
               << result.epochs << " epochs, mean squared error " << result.train_mse

@@ -4,6 +4,7 @@
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/text/json_text.h"
 #include "common/units/units.h"
 #include "daemon/offline/learning/mlp.h"
 #include "daemon/offline/train/command.h"
@@ -39,8 +40,7 @@ int Run(const MlpOptions& options, const Shared& shared) {
                                          {"seconds", seconds},
                                          {"goal_reached", result.goal_reached}};
   if (shared.json) {
-    std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << std::endl;
+    std::cout << text::ToText(report) << std::endl;
   } else {
     std::cout << options.data.model.out << ": " << options.mlp.hidden << " hidden units after "
               << result.epochs << " epochs, mean squared error " << result.train_mse

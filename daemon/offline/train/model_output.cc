@@ -6,6 +6,7 @@
 
 #include "common/cli/cli.h"
 #include "common/recording/output_file.h"
+#include "common/text/json_text.h"
 #include "common/wire/model_file.h"
 
 namespace footing::train {
@@ -47,8 +48,7 @@ int Deliver(const model::Model& model, const ModelOptions& options,
             const nlohmann::ordered_json& report, const Shared& shared) {
   if (auto written = WriteModel(model, options); !written) return cli::Report(written.error());
   if (!shared.json) std::cout << options.out << ": ";
-  std::cout << report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-            << std::endl;
+  std::cout << text::ToText(report) << std::endl;
   return 0;
 }
 

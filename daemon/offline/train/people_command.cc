@@ -8,6 +8,7 @@
 #include "common/cli/cli.h"
 #include "common/log/log.h"
 #include "common/model/model.h"
+#include "common/text/json_text.h"
 #include "daemon/offline/ranks/ranks.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
@@ -202,10 +203,7 @@ int Run(const PeopleOptions& options, const Shared& shared) {
   const auto scored = ScoreOwn(study, *people, options.more, shared.ranks);
   if (!scored) return cli::Report(scored.error());
   const ordered_json report = ReportOf(study, *people, shared.ranks.Share(*scored));
-  if (shared.ranks.first())
-    std::cout << report.dump(shared.json ? -1 : 2, ' ', false,
-                             nlohmann::ordered_json::error_handler_t::replace)
-              << "\n";
+  if (shared.ranks.first()) std::cout << text::ToText(report, shared.json ? -1 : 2) << "\n";
   return 0;
 }
 

@@ -14,6 +14,7 @@
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
 #include "common/config/data_file.h"
+#include "common/text/json_text.h"
 #include "common/units/units.h"
 #include "daemon/offline/tune/kept_run.h"
 #include "daemon/offline/tune/report.h"
@@ -281,10 +282,7 @@ Result<ordered_json> RunChecked(const Options& options, const ranks::Ranks& rank
 int Run(const Options& options, const ranks::Ranks& ranks) {
   const Result<ordered_json> report = RunChecked(options, ranks);
   if (!report) return cli::Report(report.error());
-  if (options.json && ranks.first())
-    std::printf(
-        "%s\n",
-        report->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+  if (options.json && ranks.first()) std::printf("%s\n", text::ToText(*report).c_str());
   return 0;
 }
 

@@ -43,6 +43,10 @@ Result<Binding> ParseBinding(const std::string& text) {
   return Binding{text.substr(0, slash), role};
 }
 
+std::string ToText(const Binding& binding) {
+  return binding.rig + "/" + stream::Name(binding.role);
+}
+
 DeviceRole FirstFreeRole(Placement placement, const std::string& rig,
                          const std::vector<Binding>& taken) {
   for (const DeviceRole role : RolesOf(placement)) {

@@ -20,6 +20,9 @@ struct Binding {
 /// From "rig/role", e.g. "main/left_hand".
 Result<Binding> ParseBinding(const std::string& text);
 
+/// And back.
+std::string ToText(const Binding& binding);
+
 /// The first role for a device of this placement that is free on the rig: hands, legs and head on
 /// the body, left then right for boards; kUnspecified when all are taken.
 stream::DeviceRole FirstFreeRole(decode::Placement placement, const std::string& rig,

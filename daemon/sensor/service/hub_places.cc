@@ -98,9 +98,8 @@ std::string Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIde
   Bind(*device);
   ports_.log({std::string(identity.simulated ? "simulated " : "") + stream::Name(device->kind()) +
                   " " + identity.serial + " attached as device " +
-                  std::to_string(device->number()) + ", " + device->binding().rig + "/" +
-                  stream::Name(device->binding().role) + WhyOtherRole(*device) + ": " +
-                  identity.place,
+                  std::to_string(device->number()) + ", " + ToText(device->binding()) +
+                  WhyOtherRole(*device) + ": " + identity.place,
               identity.serial});
   device->Advance(ports_.now_ns());
   Flush(*device);

@@ -57,9 +57,7 @@ std::string Hub::WhyOtherRole(const Device& device) const {
     return text + "a " + stream::Name(device.kind()) + " cannot be that";
   }
   const bool assigned = assigned_.contains(device.identity().serial);
-  return text + (assigned ? device.binding().rig + "/" + stream::Name(device.binding().role) +
-                                " is assigned to it"
-                          : "that is taken");
+  return text + (assigned ? ToText(device.binding()) + " is assigned to it" : "that is taken");
 }
 
 void Hub::Bind(Device& device) {

@@ -19,8 +19,6 @@ constexpr double kMostTareWindowS = 30;
 constexpr std::size_t kMostNameBytes = 64;
 constexpr std::size_t kMostNoteBytes = 1024;
 
-std::string Text(const Binding& binding) { return binding.rig + "/" + stream::Name(binding.role); }
-
 bool IsOnBody(DeviceRole role) {
   switch (role) {
     case DeviceRole::kLeftHand:
@@ -52,8 +50,8 @@ bool Same(const std::optional<Eigen::Quaterniond>& a, const std::optional<Eigen:
 /// Roles that a command gave outlive a restart.
 void Hub::KeepRole(const std::string& serial, const Binding& binding) {
   assigned_[serial] = binding;
-  store_.SetRole(serial, binding.role == DeviceRole::kUnspecified ? "" : Text(binding));
-  if (!store_.MountingOf(serial, Text(binding))) {
+  store_.SetRole(serial, binding.role == DeviceRole::kUnspecified ? "" : ToText(binding));
+  if (!store_.MountingOf(serial, ToText(binding))) {
     store_.MarkStale(binding.rig, "mounting", serial, "its role is new");
   }
 }
@@ -63,7 +61,7 @@ void Hub::ApplySetup(Device& device) {
   const Binding& binding = device.binding();
   const auto tare = store_.TareOf(serial);
   device.chain().SetTare(tare ? std::optional(tare->offset) : std::nullopt);
-  const auto stored = store_.MountingOf(serial, Text(binding));
+  const auto stored = store_.MountingOf(serial, ToText(binding));
   const auto rotation_MS =
       stored ? std::optional(stored->rotation_MS) : std::optional<Eigen::Quaterniond>();
   const bool remounted = stored && !stored->slipped && device.mounted_sensor().slipped();
@@ -117,7 +115,7 @@ void Hub::WatchSetup() {
       ports_.log({"board " + serial + " was moved: footing-ctl setup --only tare --only layout",
                   serial, true});
     }
-    auto stored = store_.MountingOf(serial, Text(binding));
+    auto stored = store_.MountingOf(serial, ToText(binding));
     if (stored && device->mounted_sensor().slipped() && !stored->slipped) {
       stored->slipped = true;
       store_.SetMounting(serial, stored);
@@ -136,7 +134,7 @@ void Hub::AddSetupTo(Placement placement, stream::DeviceStatus& status) const {
     if (status.note.empty()) status.note = BoardNote(status);
     return;
   }
-  const auto stored = store_.MountingOf(status.serial, Text({status.rig, status.role}));
+  const auto stored = store_.MountingOf(status.serial, ToText({status.rig, status.role}));
   status.slipped = stored && stored->slipped;
 }
 
@@ -188,7 +186,7 @@ Result<Device*> Hub::AttachedOnBody(const std::string& serial) {
   const Device& device = **found;
   if (device.placement() != Placement::kOnBody || !IsOnBody(device.binding().role)) {
     return UsageError(
-        serial + " is " + Text(device.binding()) +
+        serial + " is " + ToText(device.binding()) +
         "; only devices on hands, legs, head and trunk have a mounting (footing-ctl assign)");
   }
   return found;
@@ -263,7 +261,7 @@ Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& i
 
 void Hub::TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting) {
   setup::StoredMounting stored;
-  stored.role = Text(binding);
+  stored.role = ToText(binding);
   stored.rotation_MS = mounting.rotation_MS;
   stored.residual_rad = mounting.residual_rad;
   store_.SetMounting(mounting.serial, stored);

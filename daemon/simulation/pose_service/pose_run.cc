@@ -40,6 +40,8 @@ reconstruction::Inputs WithoutFeet(reconstruction::Inputs inputs) {
   return inputs;
 }
 
+bool Measures(const auto& feet) { return feet[0].valid || feet[1].valid; }
+
 reconstruction::InsoleInputs WithoutFeet(reconstruction::InsoleInputs inputs) {
   for (auto& foot : inputs.feet) foot.valid = false;
   return inputs;
@@ -79,12 +81,11 @@ void PoseRun::ApplyRequests(const PoseInputs& inputs) {
 }
 
 void PoseRun::ChooseSource() {
-  const auto measures = [](const auto& feet) { return feet[0].valid || feet[1].valid; };
-  const bool on_boards = measures(sensors_.loads.feet);
+  const bool on_boards = Measures(sensors_.loads.feet);
   // Insoles that come after the T-pose take one of their own before they are followed.
   if (InsolesAwaitTPose() && on_boards) {
     source_ = PoseSource::kBoards;
-  } else if (subject_->walk && measures(insoles_.feet)) {
+  } else if (subject_->walk && Measures(insoles_.feet)) {
     source_ = PoseSource::kInsoles;
   } else if (!subject_->walk || on_boards) {
     source_ = PoseSource::kBoards;
@@ -92,8 +93,8 @@ void PoseRun::ChooseSource() {
 }
 
 bool PoseRun::InsolesAwaitTPose() const {
-  return subject_->walk && (insoles_.feet[0].valid || insoles_.feet[1].valid) &&
-         !subject_->walk->output().calibrated && subject_->reconstruction.output().calibrated;
+  return subject_->walk && Measures(insoles_.feet) && !subject_->walk->output().calibrated &&
+         subject_->reconstruction.output().calibrated;
 }
 
 void PoseRun::Advance() {
@@ -162,7 +163,7 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
   PoseInputStatus& input = frame.input;
   input.simulated = simulated_;
   input.source = source_;
-  input.insoles_idle = !subject_->walk && (insoles_.feet[0].valid || insoles_.feet[1].valid);
+  input.insoles_idle = !subject_->walk && Measures(insoles_.feet);
   input.insoles_await = source_ == PoseSource::kBoards && InsolesAwaitTPose();
   const bool walks = source_ == PoseSource::kInsoles;
   for (std::size_t side = 0; side < momentum::kFeet; ++side) {

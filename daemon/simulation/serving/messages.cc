@@ -65,8 +65,9 @@ std::optional<v1::CommandResult> RefuseOtherCharacter(const v1::Command& command
   const pb::Message& message = fields.GetMessage(command, action);
   const std::uint32_t number = message.GetReflection()->GetUInt32(message, character);
   if (number == 0 || number == kCharacter) return std::nullopt;
-  return Answer(false, action->name() + ": there is no character " + std::to_string(number) +
-                           "; this server has character " + std::to_string(kCharacter));
+  return Answer(false, action->name() + ": character " + std::to_string(number) +
+                           " does not exist; this server has character " +
+                           std::to_string(kCharacter));
 }
 
 v1::CommandResult Answer(bool ok, const std::string& message) {

@@ -24,7 +24,7 @@ TEST(Messages, ACommandForACharacterThatThereIsNotIsRefused) {
   const auto refusal = RefuseOtherCharacter(push);
   ASSERT_TRUE(refusal.has_value());
   EXPECT_FALSE(refusal->ok());
-  EXPECT_EQ(refusal->message(), "push: there is no character 2; this server has character 1");
+  EXPECT_EQ(refusal->message(), "push: character 2 does not exist; this server has character 1");
   v1::Command append;
   append.mutable_append_segment()->set_length_m(2);  // Names no character.
   EXPECT_FALSE(RefuseOtherCharacter(append).has_value());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 #include "common/units/time.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/chain/features_chain.h"
@@ -205,9 +206,7 @@ void AddFeaturesCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(result.error());
       return;
     }
-    std::cout << result->dump(shared.json ? -1 : 2, ' ', false,
-                              nlohmann::ordered_json::error_handler_t::replace)
-              << std::endl;
+    std::cout << text::ToText(*result, shared.json ? -1 : 2) << std::endl;
   });
 }
 

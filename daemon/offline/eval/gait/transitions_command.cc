@@ -9,6 +9,7 @@
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/text/json_text.h"
 #include "common/text/quantile.h"
 #include "daemon/offline/eval/gait/transition_trial.h"
 #include "daemon/offline/eval/report/print_report.h"
@@ -94,9 +95,7 @@ int RunTransitions(const TransitionOptions& options, bool json) {
                                 {"p95_latency_s", NearestQuantile(latencies_s, 0.95)}};
   if (to == stream::Gait::kJump) report["leap"] = leaps.Report();
   if (json) {
-    std::printf(
-        "%s\n",
-        report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+    std::printf("%s\n", text::ToText(report).c_str());
   } else {
     std::printf("%s -> %s: %d of %d succeeded, %d falls, latency median %.2f s, p95 %.2f s\n",
                 options.from.c_str(), options.to.c_str(), succeeded, options.trials, falls,

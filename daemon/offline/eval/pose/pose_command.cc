@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 #include "common/virtual/motion/standard_layout.h"
 #include "daemon/offline/eval/pose/ablations.h"
 #include "daemon/offline/eval/pose/baselines.h"
@@ -91,15 +92,11 @@ Result<ordered_json> Evaluate(PoseFlags flags) {
 /// One line; a table has one for each row.
 void PrintField(const std::string& name, const ordered_json& value) {
   if (value.empty() || !value.is_array() || !value.front().is_object()) {
-    std::cout << name << ": "
-              << value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << "\n";
+    std::cout << name << ": " << text::ToText(value) << "\n";
     return;
   }
   std::cout << name << ":\n";
-  for (const ordered_json& row : value)
-    std::cout << "  " << row.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << "\n";
+  for (const ordered_json& row : value) std::cout << "  " << text::ToText(row) << "\n";
 }
 
 }  // namespace
@@ -130,8 +127,7 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
       }
     }
     if (shared.json) {
-      std::cout << out->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                << "\n";
+      std::cout << text::ToText(*out) << "\n";
     } else {
       for (const auto& [name, value] : out->items()) PrintField(name, value);
     }

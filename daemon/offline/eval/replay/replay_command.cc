@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 #include "daemon/offline/eval/replay/pose_replay.h"
 #include "daemon/offline/eval/replay/recorded.h"
 #include "daemon/offline/eval/replay/replay.h"
@@ -67,8 +68,7 @@ int Run(const Options& options) {
   json["first_difference_step"] = engine.first_difference_step;
   json["last_step"] = engine.last_step;
   json["state_hash"] = std::to_string(engine.state_hash);
-  std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-            << std::endl;
+  std::cout << text::ToText(json) << std::endl;
   return features.equal == features.compared && engine.equal == engine.frames ? 0 : 1;
 }
 

@@ -3,21 +3,17 @@
 #include <cstdio>
 
 #include "common/cli/cli.h"
+#include "common/text/json_text.h"
 
 namespace footing::eval {
 
 void PrintReport(const nlohmann::ordered_json& report, bool json) {
   if (json) {
-    std::printf(
-        "%s\n",
-        report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+    std::printf("%s\n", text::ToText(report).c_str());
     return;
   }
   for (const auto& [name, value] : report.items()) {
-    const std::string text =
-        value.is_string()
-            ? value.get<std::string>()
-            : value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    const std::string text = value.is_string() ? value.get<std::string>() : text::ToText(value);
     std::printf("%-26s %s\n", name.c_str(), text.c_str());
   }
 }
