@@ -61,7 +61,9 @@ int main(int argc, char** argv) {
   app->add_option("--simulation", simulation, "Address of footing-sim, the same way");
   app->add_option("--players", rules.players, "Names of both players; the first one runs first")
       ->check([](const std::string& name) {
-        return name.starts_with('-') ? "takes two names, not " + name : std::string();
+        if (name.starts_with('-')) return "takes two names, not " + name;
+        const char* const why = stream::WhyNotAPlayerName(name);
+        return std::string(why == nullptr ? "" : why);
       });
   app->add_option("--rounds", rules.rounds, "Number of rounds; the players swap roles after each")
       ->check(CLI::Range(1, 20));

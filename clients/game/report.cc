@@ -117,7 +117,7 @@ std::string ToText(const Report& report) {
             " segments passed\n";
   }
   for (const stream::GamePlayer& player : report.game.players) {
-    text += player.name + ": " + text::Fixed(player.points, 1) + " points\n";
+    text += player.name + ": " + text::Fixed(player.points, 0) + " points\n";
   }
   if (report.game.phase != stream::GamePhase::kOver) return text + "the game did not end\n";
   const auto winner = stream::WinnerOf(report.game);

@@ -69,13 +69,15 @@ Result<Answer> Check(const CheckOptions& options) {
   if (!loaded) return loaded.error();
   const plan::Protocol& protocol = loaded->protocol;
   const auto sessions = plan::MakeSessions(protocol);
+  std::vector<std::string> remarks = plan::Remarks(protocol);
+  remarks.insert(remarks.end(), loaded->remarks.begin(), loaded->remarks.end());
   Answer answer;
   answer.json = {{"name", protocol.name},
                  {"seed", protocol.seed},
                  {"order", Name(protocol.order)},
                  {"control", protocol.control},
                  {"folder", loaded->folder},
-                 {"remarks", plan::Remarks(protocol)},
+                 {"remarks", remarks},
                  {"sessions", ordered_json::array()}};
   answer.text = protocol.name + ": " + std::to_string(sessions.size()) +
                 (sessions.size() == 1 ? " participant" : " participants") + ", order " +
@@ -92,7 +94,7 @@ Result<Answer> Check(const CheckOptions& options) {
   answer.text +=
       "Practice and rests of a session: " + text::Fixed(PlannedS(sessions.front()) / 60, 1) +
       " min.";
-  for (const std::string& remark : plan::Remarks(protocol)) answer.text += "\nNote: " + remark;
+  for (const std::string& remark : remarks) answer.text += "\nNote: " + remark;
   return answer;
 }
 

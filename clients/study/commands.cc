@@ -29,6 +29,18 @@ Result<std::string> ReadTrack(const std::string& key, const std::string& track,
                      "\": " + found.error().message);
 }
 
+/// A track that may be left, or that grows, has none unless it names one (docs/tracks.md).
+bool HasFinishLine(const std::string& track_text) {
+  using nlohmann::json;
+  const json track = json::parse(track_text, nullptr, /*allow_exceptions=*/false);
+  if (!track.is_object()) return true;
+  if (track.contains("finish_m")) return track.value("finish_m", 0.0) > 0;
+  for (const char* key : {"open", "extendable", "endless"}) {
+    if (track.value(key, false)) return false;
+  }
+  return true;
+}
+
 /// Each task must be one of the straight track's.
 Result<void> CheckTasks(const plan::Protocol& protocol, const std::string& track_text,
                         const std::string& file) {
@@ -86,13 +98,23 @@ Result<LoadedProtocol> Load(const std::string& path, const std::string& folder) 
   const auto straight = ReadTrack("straight_track", protocol->straight_track, path);
   if (!straight) return straight.error();
   if (const auto done = CheckTasks(*protocol, *straight, path); !done) return done.error();
+  std::vector<std::string> remarks;
   for (const std::string& track : protocol->test_tracks) {
-    if (const auto found = ReadTrack("test_tracks", track, path); !found) return found.error();
+    const auto found = ReadTrack("test_tracks", track, path);
+    if (!found) return found.error();
+    if (HasFinishLine(*found)) continue;
+    remarks.push_back("test track " + track +
+                      " has no finish line: a trial on it ends when trial_limit_s is over, or by "
+                      "the experimenter");
   }
   auto tables = ReadTables(*protocol, path);
   if (!tables) return tables.error();
-  return LoadedProtocol{path, std::move(*text), std::move(*protocol),
-                        folder.empty() ? journal::FolderOf(path) : folder, std::move(*tables)};
+  return LoadedProtocol{path,
+                        std::move(*text),
+                        std::move(*protocol),
+                        folder.empty() ? journal::FolderOf(path) : folder,
+                        std::move(*tables),
+                        std::move(remarks)};
 }
 
 namespace {

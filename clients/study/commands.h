@@ -25,6 +25,7 @@ struct LoadedProtocol {
   std::string folder;  ///< Of the study's files.
   /// Texts of its mapping tables, by interface.
   std::map<std::string, std::string> tables = {};
+  std::vector<std::string> remarks = {};  ///< On its tracks; plan::Remarks has those on the plan.
 };
 
 /// Reads and checks a protocol file; its tracks must be built-in ones, its tables measured ones.

@@ -6,7 +6,8 @@
 
 #include "common/config/data_file.h"
 #include "common/config/lines_of_keys.h"
-#include "common/text/library_text.h"
+#include "common/text/json_text.h"
+#include "common/text/utf8.h"
 
 namespace footing::config {
 namespace {
@@ -15,14 +16,6 @@ using Json = nlohmann::ordered_json;
 
 std::string Range(const std::string& min, const std::string& max) {
   return "from " + min + " to " + max;
-}
-
-bool IsUtf8(const std::string& text) {
-  try {
-    return !Json(text).dump().empty();
-  } catch (const Json::type_error&) {
-    return false;
-  }
 }
 
 std::string NumberText(double value) {
@@ -150,16 +143,11 @@ Result<void> Binder::Assign(const std::string& key, const Json& value, const std
 }
 
 Result<void> Binder::ApplyText(const std::string& text, const std::string& origin) {
-  Json json;
-  try {
-    json = Json::parse(text, nullptr, true, true);
-  } catch (const Json::exception& error) {  // Of a number too large for any type, too.
-    return UsageError(what_ + ": " + origin +
-                      " is not JSON: " + std::string(text::WithoutTag(error.what())));
-  }
-  if (!json.is_object()) return UsageError(what_ + ": " + origin + " must hold one JSON object");
+  const auto json = text::ParseOrderedJson(text, origin);
+  if (!json) return UsageError(what_ + ": " + json.error().message);
+  if (!json->is_object()) return UsageError(what_ + ": " + origin + " must hold one JSON object");
   const auto lines = LinesOfKeys(text);
-  for (const auto& [key, value] : json.items()) {
+  for (const auto& [key, value] : json->items()) {
     const auto line = lines.find(key);
     const std::string place =
         line == lines.end() ? origin : origin + ":" + std::to_string(line->second);
@@ -184,7 +172,7 @@ Result<void> Binder::ApplySetting(const std::string& setting) {
   const Entry* entry = Find(key);
   Json value = Json::parse(text, nullptr, false);
   if (value.is_discarded() || (entry != nullptr && entry->text && !value.is_string())) {
-    if (!IsUtf8(text)) return UsageError("--set " + key + ": its value is not text in UTF-8");
+    if (!text::IsUtf8(text)) return UsageError("--set " + key + ": its value is not text in UTF-8");
     value = text;
   }
   return Assign(key, value, "--set", "--set");

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/text/joined.h"
+
 namespace footing::config {
 namespace {
 
@@ -37,23 +39,19 @@ std::string BuiltInNames(const std::string& folder, const std::string& data_fold
     }
     if (!names.empty()) break;
   }
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
+  return text::Joined(names);
 }
 
 }  // namespace
 
 Result<std::string> FindDataFile(const std::string& name, const std::string& folder) {
   const std::vector<std::string> places = DataFolders(folder);
-  std::string tried;
   for (const std::string& place : places) {
     const std::string path = place + "/" + name;
     std::error_code error;
     if (std::filesystem::exists(path, error)) return path;
-    tried += (tried.empty() ? "" : ", ") + place;
   }
-  return Failure("cannot find " + name + " (looked in " + tried +
+  return Failure("cannot find " + name + " (looked in " + text::Joined(places) +
                  "); name its folder on the command line");
 }
 

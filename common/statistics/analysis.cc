@@ -31,8 +31,14 @@ std::string AdviceOnDesign(const StudyTable& table, const std::string& test) {
            " subjects has a value in every group, and " + assumption +
            ", which counts the differences between subjects as noise";
   }
+  if (!table.unpaired.empty()) {
+    return "Do not believe p: " + assumption +
+           ", but some subjects have several values, and they could not be paired (" +
+           table.unpaired + ")";
+  }
   return "Believe p only if every group has other subjects: " + assumption +
-         ", so for a study in which each subject used every interface believe --test paired";
+         ", so for a study in which each subject used every interface believe the paired test, "
+         "which needs to know the subject of each value";
 }
 
 std::string Advice(const StudyTable& table, const AnalysisRequest& request,

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "common/statistics/table_rows.h"
+#include "common/text/joined.h"
 #include "common/text/lines.h"
 
 namespace footing::statistics {
@@ -23,9 +25,9 @@ std::size_t PlaceOf(const std::vector<NamedGroup>& groups, const std::string& na
 }
 
 std::string Names(const std::vector<NamedGroup>& groups) {
-  std::string names;
-  for (const NamedGroup& group : groups) names += (names.empty() ? "" : ", ") + group.name;
-  return names;
+  std::vector<std::string_view> names;
+  for (const NamedGroup& group : groups) names.push_back(group.name);
+  return text::Joined(names);
 }
 
 /// In the order of the file. A name belongs to one index, an index to one name.
@@ -107,6 +109,12 @@ Result<std::vector<NamedGroup>> OrderedGroups(const TableRows& table, const Tabl
   return groups;
 }
 
+bool SomeSubjectRepeats(const TableRows& table) {
+  std::set<std::string_view> subjects;
+  for (const TableRow& row : table.rows) subjects.insert(row.subject);
+  return subjects.size() < table.rows.size();
+}
+
 Result<Blocks> ToBlocks(const std::vector<NamedGroup>& groups, const TableRows& table,
                         const TableRequest& request) {
   Blocks blocks;
@@ -166,6 +174,8 @@ Result<StudyTable> ParseStudyTable(std::string_view text, const TableRequest& re
     study.blocks = std::move(blocks).value();
   } else if (request.use == TableUse::kPaired) {
     return blocks.error();
+  } else if (SomeSubjectRepeats(*table)) {
+    study.unpaired = blocks.error().message;
   }
   return study;
 }

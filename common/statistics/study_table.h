@@ -29,6 +29,8 @@ struct StudyTable {
   /// Where the table has a column subject and each subject one value in every group; of counts,
   /// those per exposure.
   std::optional<Blocks> blocks;
+  /// Where some subject has several values, but there are no blocks: why, naming file and line.
+  std::string unpaired = {};
 };
 
 /// CSV text with a header; other columns are left alone, quotes around a cell are removed. The

@@ -58,6 +58,11 @@ Result<Columns> ReadColumns(const text::Lines& lines, std::string_view line,
   columns.group_index = Find(names, "group_index");
   columns.subject = Find(names, "subject");
   if (request.use == TableUse::kCounts) columns.exposure = Find(names, "exposure");
+  for (const std::string_view name : {"value", "group", "group_index", "subject", "exposure"}) {
+    if (std::count(names.begin(), names.end(), name) > 1) {
+      return lines.Fault("two columns are named " + std::string(name));
+    }
+  }
   if (paired && !columns.subject) return missing("subject");
   if (!paired && !columns.group_index && request.control.empty()) {
     const Error error = missing("group_index");

@@ -31,13 +31,17 @@ const char* Name(GamePhase phase) {
   return "unspecified";
 }
 
+const char* WhyNotAPlayerName(std::string_view name) {
+  return name.empty() || name.size() > kMostNameBytes ? "a player's name must have 1 to 24 bytes"
+                                                      : nullptr;
+}
+
 const char* WhyNotAGame(const GameState& game) {
   if (game.phase == GamePhase::kUnspecified) return "the phase is missing";
   if (game.players.size() != 2) return "there must be two players";
   for (const GamePlayer& player : game.players) {
-    if (player.name.empty() || player.name.size() > kMostNameBytes) {
-      return "a player's name must have 1 to 24 bytes";
-    }
+    const char* const why = WhyNotAPlayerName(player.name);
+    if (why != nullptr) return why;
   }
   if (game.rounds < 1 || game.rounds > kMostRounds || game.results.size() > game.rounds) {
     return "there must be 1 to 20 rounds, and no more results than rounds";

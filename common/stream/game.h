@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/stream/track.h"
@@ -57,6 +58,10 @@ struct GameState {
   std::string note;                   ///< For a person.
   bool pits = false;                  ///< The builder may lay pits.
 };
+
+/// Why a text cannot be the name of a player, as text of static storage; null when it can: 1 to 24
+/// bytes.
+const char* WhyNotAPlayerName(std::string_view name);
 
 /// Why a state cannot be that of a game, as text of static storage; null when it can: two players
 /// with names of 1 to 24 bytes, at most 20 rounds, indices of players below 2, short texts.

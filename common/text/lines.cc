@@ -1,6 +1,9 @@
 #include "common/text/lines.h"
 
+#include <algorithm>
 #include <cctype>
+
+#include "common/text/utf8.h"
 
 namespace footing::text {
 namespace {
@@ -83,11 +86,19 @@ bool EqualsIgnoringCase(std::string_view a, std::string_view b) {
 }
 
 std::string Quoted(std::string_view word) {
+  constexpr std::size_t kMostCharacters = 40;
   std::string text = "'";
-  for (const char c : word.substr(0, 40)) {
-    text += std::isprint(static_cast<unsigned char>(c)) != 0 ? c : '?';
+  std::size_t at = 0;
+  for (std::size_t n = 0; n < kMostCharacters && at < word.size(); ++n) {
+    const std::string_view one = word.substr(at, SequenceLength(word, at));
+    // U+0080 to U+009F are controls, which terminals may follow.
+    const bool control = one.size() == 2 && one < "\u00a0";
+    const bool shown = one.size() == 1 ? std::isprint(static_cast<unsigned char>(one[0])) != 0
+                                       : !one.empty() && !control;
+    text += shown ? one : "?";
+    at += std::max<std::size_t>(1, one.size());
   }
-  return text + (word.size() > 40 ? "...'" : "'");
+  return text + (at < word.size() ? "...'" : "'");
 }
 
 }  // namespace footing::text

@@ -48,7 +48,7 @@ std::string_view TakeWord(std::string_view& line);
 
 bool EqualsIgnoringCase(std::string_view a, std::string_view b);
 
-/// `word` in quotes for a message: shortened, unprintable characters as ?.
+/// `word` in quotes for a message: shortened, controls and what is not UTF-8 as ?.
 std::string Quoted(std::string_view word);
 
 }  // namespace footing::text

@@ -66,6 +66,7 @@ def wrong_words(stage):
     expect(stage, USAGE, "no_such_key", "footing-ctl", "config", "show", "--config", stage.folder / "no_such_key.json")
     expect(stage, USAGE, "connects to no server", "footing-ctl", "trust", "--connect", "tls:127.0.0.1:1")
     expect(stage, USAGE, "takes two names", "footing-game", "--players", "Ann", "--seconds", 1)
+    expect(stage, USAGE, "1 to 24 bytes", "footing-game", "--players", "Ann", "", "--seconds", 1)
     expect(stage, USAGE, "must be 127.0.0.1:PORT", "footing-skeleton", "--web", "0.0.0.0:7180", "--no-publish")
     broker = ("--nats", "tcp:127.0.0.1:1", "--seconds", 1)
     expect(stage, USAGE, "--insecure-lan", "footing-relay", "serve", *broker, "--listen", "tcp:0.0.0.0:7460")

@@ -6,7 +6,7 @@
 #include "clients/study/plan/reader.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
-#include "common/text/library_text.h"
+#include "common/text/json_text.h"
 
 namespace footing::study::plan {
 namespace {
@@ -174,14 +174,10 @@ bool IsCode(const std::string& code) {
 const char* Name(Order order) { return order == Order::kWilliams ? "williams" : "random"; }
 
 Result<Protocol> ParseProtocol(const std::string& text, const std::string& file) {
-  ordered_json object;
-  try {
-    object = ordered_json::parse(text, nullptr, true, /*ignore_comments=*/true);
-  } catch (const ordered_json::exception& error) {
-    return InvalidData(file + ": not JSON: " + std::string(text::WithoutTag(error.what())));
-  }
+  const auto object = text::ParseOrderedJson(text, file);
+  if (!object) return object.error();
   Protocol protocol;
-  Reader reader(object, file);
+  Reader reader(*object, file);
   ReadPeople(reader, protocol);
   ReadTrials(reader, protocol);
   if (const auto done = ReadSurvey(reader, file, protocol.survey); !done) return done.error();

@@ -1,5 +1,6 @@
 #include "clients/study/plan/reader.h"
 
+#include "common/text/joined.h"
 #include "common/text/json_text.h"
 
 #include <algorithm>
@@ -106,10 +107,9 @@ Result<void> Reader::Finish() {
   if (object_.is_object()) {
     for (const auto& [key, value] : object_.items()) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-      std::string keys;
-      for (const std::string& one : known_) keys += (keys.empty() ? "" : ", ") + one;
       // A misspelt key is more to the point than what is missing for it.
-      return InvalidData(place_ + ": unknown key \"" + key + "\"; there are: " + keys);
+      return InvalidData(place_ + ": unknown key \"" + key +
+                         "\"; there are: " + text::Joined(known_));
     }
   }
   if (fault_) return *fault_;

@@ -277,7 +277,11 @@ statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& pro
     std::vector<double>& row = blocks.values.emplace_back();
     for (const std::string& name : kept) row.push_back(values.at(name));
   }
-  if (blocks.subjects.size() > 1) table.blocks = std::move(blocks);
+  if (blocks.subjects.size() > 1) {
+    table.blocks = std::move(blocks);
+  } else if (by_person.size() < measure.values.size()) {
+    table.unpaired = "fewer than two participants have a value for every interface";
+  }
   return table;
 }
 

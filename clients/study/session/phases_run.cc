@@ -11,6 +11,7 @@
 #include "clients/study/session/undo.h"
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/text/lines.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
 
@@ -196,7 +197,11 @@ Result<bool> SessionRun::AskToRepeat(const plan::Phase& phase) {
     if (next->empty()) return false;
     if (*next == "r") return true;
     const auto number = next->starts_with("u ") ? text::ToCount(next->substr(2)) : std::nullopt;
-    if (!number) continue;
+    if (!number) {
+      context_.console.Print(text::Quoted(*next) +
+                             " is none of these; nothing was changed (u 2 undoes failure 2)");
+      continue;
+    }
     if (const auto done = Undo(phase, *number); !done) return done.error();
   }
 }

@@ -4,6 +4,7 @@
 #include "clients/study/session/run_session.h"
 #include "common/clock/clock.h"
 #include "common/config/data_file.h"
+#include "common/text/lines.h"
 #include "common/text/number.h"
 #include "common/text/utc.h"
 
@@ -92,7 +93,11 @@ Result<void> SessionRun::MeasureRanges(const plan::Phase& phase) {
     const auto next = context_.console.Ask(
         "Press Enter to measure again, or type b to go on without own ranges:");
     if (!next) return next.error();
-    if (*next != "b") continue;
+    if (next->empty()) continue;
+    if (*next != "b") {
+      context_.console.Print(text::Quoted(*next) + " is neither; measuring again");
+      continue;
+    }
     const auto given = context_.options.tables.find(interface);
     const bool protocol = given != context_.options.tables.end();
     return NoteTable(interface, protocol ? kByProtocol : kByBuiltIn, protocol ? given->second : "",

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/text/joined.h"
 #include "common/text/lines.h"
 
 namespace footing::motion {
@@ -138,21 +139,35 @@ int Find(const MarkerTracks& tracks, std::string_view name) {
   return -1;
 }
 
+/// A field as a file of that side would name its markers, of which one is enough: "LMT1 or LMT5"
+/// for "@MT1 @MT5".
+std::string Spelt(const MarkerSet& set, std::string_view field, int side) {
+  const auto spellings = text::SplitAtBlanks(side == 0 ? set.left : set.right);
+  std::vector<std::string> names;
+  for (const std::string_view word : text::SplitAtBlanks(field)) {
+    if (word == "|") continue;
+    std::string& name = names.emplace_back(word);
+    const auto at = name.find('@');
+    if (at != std::string::npos) name.replace(at, 1, spellings.front());
+  }
+  return text::Joined(names, " or ");
+}
+
 /// What of the necessary fields is not there; empty when all is.
 std::string Missing(const MarkerTracks& tracks, const MarkerSet& set, int& found) {
-  std::string missing;
+  std::vector<std::string> missing;
   found = 0;
   for (const std::string_view field : Necessary(set)) {
     for (int side = 0; side < 2; ++side) {
       if (!MarkersOf(tracks, set, field, side).empty()) {
         ++found;
       } else {
-        missing += (missing.empty() ? "" : ", ") + std::string(field) +
-                   (side == 0 ? " (left)" : " (right)");
+        const std::string name = Spelt(set, field, side);
+        if (missing.empty() || missing.back() != name) missing.push_back(name);  // C7 has no side.
       }
     }
   }
-  return missing;
+  return text::Joined(missing);
 }
 
 /// What the file has, and what the set that is nearest to it would still need.
@@ -166,11 +181,9 @@ std::string NoKnownSet(const MarkerTracks& tracks, const std::string& names) {
     most = found;
     nearest = std::string(set.name) + ", the nearest, also needs " + missing;
   }
-  std::string markers;
-  for (const std::string& name : tracks.names) markers += (markers.empty() ? "" : ", ") + name;
   return "the markers match no known set (" + names + "): " + nearest +
          "; rename them, or add a set to the table (docs/body.md, From markers); the file has " +
-         std::to_string(tracks.names.size()) + " markers: " + markers;
+         std::to_string(tracks.names.size()) + " markers: " + text::Joined(tracks.names);
 }
 
 }  // namespace

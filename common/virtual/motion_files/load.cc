@@ -35,6 +35,8 @@ std::string Ending(const std::string& path) {
   return ending;
 }
 
+bool IsMarkerFile(const std::string& ending) { return ending == "trc" || ending == "c3d"; }
+
 Result<motion::C3d> ReadC3d(const std::string& path) {
   const auto text = Read(path);
   if (!text) return text.error();
@@ -110,11 +112,20 @@ Result<LoadedMotion> FromBvh(const std::string& text, const std::string& path,
 
 }  // namespace
 
-Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options) {
+bool IsMotionFile(const std::string& path) {
   const std::string ending = Ending(path);
-  if (ending == "trc" || ending == "c3d") return FromMarkers(path, options);
-  if (ending != "bvh" && ending != "amc") {
+  return IsMarkerFile(ending) || ending == "bvh" || ending == "amc";
+}
+
+Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options) {
+  if (!IsMotionFile(path)) {
     return UsageError(path + ": not a motion file: expected .bvh, .amc, .trc or .c3d");
+  }
+  const std::string ending = Ending(path);
+  if (IsMarkerFile(ending)) return FromMarkers(path, options);
+  if (!options.still.empty()) {
+    return UsageError(path + ": has no markers, so --still " + options.still +
+                      " would have no effect; leave it out");
   }
   const auto text = Read(path);
   if (!text) return text.error();

@@ -32,6 +32,9 @@ struct LoadedMotion {
   std::optional<double> height_m;
 };
 
+/// By its ending: .bvh, .amc, .trc or .c3d.
+bool IsMotionFile(const std::string& path);
+
 /// Reads .bvh, .amc (with its skeleton), .trc and .c3d. The error of an unknown ending lists them.
 /// Angles are motion::Canonical.
 Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options = {});

@@ -8,6 +8,7 @@
 #include "common/body/points.h"
 #include "common/config/data_file.h"
 #include "common/log/log.h"
+#include "common/text/joined.h"
 #include "common/text/number.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/standard_layout.h"
@@ -132,9 +133,7 @@ bool StaysInPlace(const Clip& clip) {
 }
 
 std::string Listed(const std::set<std::string>& subjects) {
-  std::string list;
-  for (const std::string& subject : subjects) list += (list.empty() ? "" : ", ") + subject;
-  return list.empty() ? "none" : list;
+  return subjects.empty() ? "none" : text::Joined(subjects);
 }
 
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {

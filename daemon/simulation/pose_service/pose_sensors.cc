@@ -8,6 +8,7 @@
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
 #include "common/body/skeleton_points.h"
+#include "common/text/joined.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 
@@ -218,8 +219,7 @@ void PoseSensors::ReportHands(std::int64_t now_ns, std::int64_t host_ns) {
     trackers.insert(fused.trackers.begin(), fused.trackers.end());
   }
   if (trackers.empty()) return;
-  tracker_.clear();
-  for (const std::string& name : trackers) tracker_ += (tracker_.empty() ? "" : ", ") + name;
+  tracker_ = text::Joined(trackers);
 }
 
 void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {

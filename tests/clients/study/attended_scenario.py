@@ -101,6 +101,8 @@ def session(stage, start):
     doing = next(tick["study"]["doing"] for tick in read_ticks(stage.simulation, 30, ("study", "characters"))
                  if "The trial is over" in tick.get("study", {}).get("doing", ""))
     assert re.search(r"has moved for \d+ min: a rest of \d+ min comes next", doing), doing
+    experimenter.answer("r to repeat", f"undo {second[1]}")
+    experimenter.read(f"'undo {second[1]}' is none of these; nothing was changed")
     experimenter.answer("r to repeat", f"u {second[1]}")
     experimenter.read(f"failure {second[1]} undone")
     experimenter.answer("u NUMBER to undo", "u 999")

@@ -55,6 +55,9 @@ def check_refusals(stage):
     short = stage.folder / "short.json"
     short.write_text(json.dumps({**PROTOCOL, "practice_s": 20, "rest_s": 5}))
     assert "of a session: 0.8 min." in stage.run("footing-study", "check", short).stdout  # 45 s.
+    short.write_text(json.dumps({**PROTOCOL, "test_tracks": ["1", "endless"]}))
+    remarks = [one for one in stage.run_json("footing-study", "check", short)["remarks"] if "finish line" in one]
+    assert len(remarks) == 1 and remarks[0].startswith("test track endless has no"), remarks
     refused(stage, 2, "not in the protocol", *words(stage, "P09", "--unattended"))
     refused(stage, 3, "no footingd", *words(stage, "P01", "--unattended"))
     refused(stage, 1, "has no journal yet", "analyze", protocol)  # Nothing of it was begun.

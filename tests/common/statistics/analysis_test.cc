@@ -181,7 +181,7 @@ TEST(Analysis, NoteNamesWhatToBelieve) {
   const Case steel = {TestKind::kSteel, {}}, dunnett = {TestKind::kDunnett, {}};
   EXPECT_NE(note(Table(), steel).find("Believe the paired p"), std::string::npos);
   EXPECT_NE(note(Table(), steel).find("4 subjects"), std::string::npos);
-  EXPECT_NE(note(independent, dunnett).find("believe --test paired"), std::string::npos);
+  EXPECT_NE(note(independent, dunnett).find("believe the paired test"), std::string::npos);
   EXPECT_NE(note(Table(), {TestKind::kPaired, {}}).find("Believe p:"), std::string::npos);
   EXPECT_NE(note(Table(), {TestKind::kPaired, Method::kAsymptotic}).find("Believe permutation_p"),
             std::string::npos);
@@ -189,6 +189,26 @@ TEST(Analysis, NoteNamesWhatToBelieve) {
   EXPECT_NE(
       note(Table(), {TestKind::kPaired, {}}).find("wilcoxon_exact_holm can never be below 0.25"),
       std::string::npos);
+}
+
+TEST(Analysis, NobodyIsToBelieveAPOfSubjectsThatRepeatButCannotBePaired) {
+  const auto note = [](const std::string& rows) {
+    const auto table = ParseStudyTable("subject,group_index,group,value\n" + rows,
+                                       {"study.csv", "", TableUse::kIndependent});
+    EXPECT_TRUE(table) << table.error().message;
+    const auto report = RunTest(*table, {TestKind::kSteel, {}}, Alternative::kTwoSided);
+    return report.at("note").get<std::string>();
+  };
+  const std::string twice = note("p1,0,stick,1\np1,0,stick,2\np2,1,wrist,3\np2,0,stick,4\n");
+  EXPECT_NE(twice.find("Do not believe p"), std::string::npos) << twice;
+  EXPECT_NE(twice.find("study.csv, line 3: subject 'p1' has a second value"), std::string::npos);
+  const std::string missing = note("p1,0,stick,1\np1,1,wrist,2\np2,1,wrist,3\n");
+  EXPECT_NE(missing.find("Do not believe p"), std::string::npos) << missing;
+  EXPECT_NE(missing.find("subject 'p2' has no value for group 'stick'"), std::string::npos);
+  // Everybody in one group only: independent groups.
+  const std::string once = note("p1,0,stick,1\np2,1,wrist,2\np3,1,wrist,3\n");
+  EXPECT_NE(once.find("Believe p only if every group has other subjects"), std::string::npos)
+      << once;
 }
 
 TEST(Analysis, NoteSaysWhenTheExactPCannotReachTheLevel) {

@@ -39,6 +39,11 @@ TEST(StudyTable, LeavesOtherColumnsAloneAndReadsWhatSpreadsheetsWrite) {
   EXPECT_EQ(table->groups[1].values, (std::vector<double>{20}));
 }
 
+TEST(StudyTable, TwoColumnsOfOneNameAreRefused) {
+  ExpectFault(Parse("group_index,group,value,value\n0,stick,1,9\n1,arm,3,9\n"), "line 1",
+              "two columns are named value");
+}
+
 TEST(StudyTable, MakesBlocksOfSubjects) {
   const std::string text = "subject,group,value\np2,arm,4\np1,control,1\np2,control,3\np1,arm,2\n";
   const auto table = Parse(text, TableUse::kPaired);

@@ -23,5 +23,22 @@ TEST(JsonText, TheErrorNamesFileLineAndColumn) {
   EXPECT_FALSE(ParseJson("\xff\xfe", "c.json").ok());
 }
 
+TEST(JsonText, AKeyThatOneObjectHasTwiceIsRefused) {
+  for (const char* text :
+       {"{\"a\": 1, \"b\": 2, \"a\": 3}", "[0, {\"c\": {\"a\": 1, \"a\": 1}}]"}) {
+    const auto json = ParseJson(text, "a.json");
+    ASSERT_FALSE(json.ok()) << text;
+    EXPECT_EQ(json.error().kind, ErrorKind::kInvalidData);
+    EXPECT_EQ(json.error().message,
+              "a.json has the key 'a' twice in one object; leave one of them out");
+    EXPECT_FALSE(ParseOrderedJson(text, "a.json").ok());
+  }
+  // Of different objects, one within the other.
+  const auto json =
+      ParseOrderedJson("{\"b\": {\"a\": 1}, \"a\": [{\"a\": 2}, {\"a\": 3}]}", "a.json");
+  ASSERT_TRUE(json.ok()) << json.error().message;
+  EXPECT_EQ(json->dump(), "{\"b\":{\"a\":1},\"a\":[{\"a\":2},{\"a\":3}]}");
+}
+
 }  // namespace
 }  // namespace footing::text

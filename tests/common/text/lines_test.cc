@@ -20,5 +20,20 @@ TEST(Lines, RowsLeaveOutBlanksAndComments) {
   EXPECT_FALSE(lines.NextRow().has_value());
 }
 
+TEST(Lines, QuotedWordsKeepTheirLanguageAndLoseControls) {
+  EXPECT_EQ(Quoted("Größe 𝄞"), "'Größe 𝄞'");
+  EXPECT_EQ(Quoted("a\x1b[2J\tb"), "'a?[2J?b'");
+  EXPECT_EQ(Quoted("a\xc2\x9b\xff"),
+            "'a?"
+            "?'");  // A control of 8 bits; a byte of Latin-1.
+  EXPECT_EQ(Quoted("a\xe2\x82"),
+            "'a?"
+            "?'");  // Cut short.
+  std::string word;
+  for (int i = 0; i < 40; ++i) word += "ü";
+  EXPECT_EQ(Quoted(word), "'" + word + "'");
+  EXPECT_EQ(Quoted(word + "ü"), "'" + word + "...'");
+}
+
 }  // namespace
 }  // namespace footing::text

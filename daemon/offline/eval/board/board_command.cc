@@ -1,6 +1,7 @@
 #include "daemon/offline/eval/board/board_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -23,6 +24,8 @@ using posturography::Sway;
 
 /// 55 hours at 100 Hz: a guard against times in another unit.
 constexpr double kMostResampled = 2e7;
+/// More than anybody weighs, and less than a light adult's weight in newtons.
+constexpr double kMostPersonKg = 300;
 
 struct Options {
   std::string corners;
@@ -71,6 +74,11 @@ Result<Input> ReadCorners(const Options& options) {
     return InvalidData(options.corners + ": no sample with a load above " +
                        std::to_string(NewtonsToKilograms(shape.least_body_weight_n)).substr(0, 4) +
                        " kg or more: nobody stood on the board");
+  }
+  if (NewtonsToKilograms(standing.weight_n) > kMostPersonKg) {
+    return InvalidData(options.corners + ": the loads add up to " +
+                       std::to_string(std::lround(NewtonsToKilograms(standing.weight_n))) +
+                       " kg, more than a person weighs; are they in newtons?");
   }
   Input input;
   input.head["mass_kg"] = NewtonsToKilograms(standing.weight_n);
@@ -191,13 +199,15 @@ void AddBoardCommand(CLI::App& app, Shared& shared) {
       ->add_option("--board", options->board,
                    "Board of an export with several: its role (left_board) or device number")
       ->needs(corners);
-  command
-      ->add_option("--rate-hz", options->rate_hz,
-                   "Uniform rate to resample to by window averages, Hz (default: as recorded)")
-      ->check(CLI::Range(1.0, 1000.0));
+  auto* rate =
+      command
+          ->add_option("--rate-hz", options->rate_hz,
+                       "Uniform rate to resample to by window averages, Hz (default: as recorded)")
+          ->check(CLI::Range(1.0, 1000.0));
   command
       ->add_option("--window-s", options->window_s,
                    "Window of the averages, s (default: 2 intervals of the slower rate)")
+      ->needs(rate)
       ->check(CLI::Range(0.001, 10.0));
   command
       ->add_option("--spacing-x-mm", options->spacing_x_mm,

@@ -122,6 +122,10 @@ void AddTransitionsCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 6.0));
   command->add_option("--height", options->speeds.height_m, "Jump height, m (default: drawn)")
       ->check(CLI::Range(0.05, 0.7));
+  command->footer(
+      "Examples:\n"
+      "  footing-eval transitions --from walk --to run --trials 20 --seed 1 --json\n"
+      "  footing-eval transitions --from walk --to run --trials 20 --gains my-gains.csv");
   command->callback(
       [options, &shared] { shared.exit_code = RunTransitions(*options, shared.json); });
 }

@@ -66,7 +66,15 @@ Result<motion_files::LoadedMotion> Perform(const PoseSceneOptions& options) {
 }
 
 Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
-  if (options.motion.ends_with(".json")) return Perform(options);
+  if (options.motion.ends_with(".json")) {
+    if (options.still.empty()) return Perform(options);
+    return UsageError(options.motion + ": has no markers, so --still " + options.still +
+                      " would have no effect; leave it out");
+  }
+  if (!motion_files::IsMotionFile(options.motion)) {
+    return UsageError(options.motion +
+                      ": not a motion: expected .bvh, .amc, .trc, .c3d, or a script, .json");
+  }
   motion_files::LoadOptions load;
   load.skeleton = options.skeleton;
   load.still = options.still;

@@ -27,6 +27,9 @@ Result<std::vector<std::vector<std::string>>> ReadNamedColumns(
       for (const std::string& name : names) {
         const auto found = std::find(cells.begin(), cells.end(), name);
         if (found == cells.end()) return InvalidData(path + " has no column " + name);
+        if (std::count(cells.begin(), cells.end(), name) > 1) {
+          return lines.Fault("two columns are named " + name);
+        }
         places.push_back(static_cast<std::size_t>(found - cells.begin()));
       }
       continue;

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "common/text/utf8.h"
+
 namespace footing::eval {
 namespace {
 
@@ -22,13 +24,14 @@ std::string Cell(const ordered_json& value) {
 std::string Table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], text::Characters(row[i]));
   }
   std::string text;
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - row[i].size(), ' ');
+      const std::string padding(widths[i] - text::Characters(row[i]), ' ');
       line += (i == 0 ? row[i] + padding : "  " + padding + row[i]);
     }
     text += line + "\n";

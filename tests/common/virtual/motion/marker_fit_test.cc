@@ -18,7 +18,10 @@ namespace footing::motion {
 namespace {
 
 using body::Landmark;
+using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::Not;
 
 /// A standard person who squats and swings, and OpenCap's markers on him: place of each in the
 /// frame of its landmark's joint (in a T-pose: x ahead, y left, z up), the left ones.
@@ -216,9 +219,15 @@ TEST(MarkerFit, WhatIsNotSeenForLongIsNoMotion) {
 TEST(MarkerFit, ErrorsSayWhatIsMissing) {
   Made made;
   EXPECT_THAT(FitMarkers(made.tracks, {.set = "plug-in-gait"}).error().message,
-              HasSubstr("which also needs @ASI (left)"));
+              HasSubstr("which also needs LASI, RASI"));
   EXPECT_THAT(FitMarkers(made.tracks, {.set = "mine"}).error().message,
               HasSubstr("there are opencap, plug-in-gait"));
+  // Of several markers one is enough; C7 has no side.
+  EXPECT_THAT(FitMarkers(made.tracks, {.set = "vicon53"}).error().message,
+              AllOf(HasSubstr("LMT1 or LMT5, RMT1 or RMT5"), Not(HasSubstr("@"))));
+  MarkerTracks no_neck = made.tracks;
+  for (std::string& name : no_neck.names) name = name == "C7" ? "D7" : name;
+  EXPECT_THAT(FitMarkers(no_neck, {.set = "opencap"}).error().message, EndsWith("also needs C7"));
   MarkerTracks unknown = made.tracks;
   for (std::string& name : unknown.names) name = "M" + name;
   EXPECT_THAT(FitMarkers(unknown).error().message, HasSubstr("match no known set (opencap, "));

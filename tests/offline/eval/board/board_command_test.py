@@ -68,6 +68,12 @@ def made(program, folder):
 
     nobody = run("time_s,tl_kg,tr_kg,bl_kg,br_kg\n0,0,0,0,0\n", kind="--corners")
     assert nobody.returncode == 4 and "nobody" in nobody.stderr, nobody
+    newtons = run(corners.replace("15,20,15,20", "150,200,150,200"), kind="--corners")
+    assert newtons.returncode == 4 and "add up to 700 kg" in newtons.stderr, newtons
+    idle = run(circle, "--window-s", "0.1")
+    assert idle.returncode == 2 and "--rate-hz" in idle.stderr, idle
+    twice = run("device,device,sampled_ns,top_left_n,top_right_n,bottom_left_n,bottom_right_n\n", kind="--corners")
+    assert twice.returncode == 4 and "two columns are named device" in twice.stderr, twice
     long = run("time_s,x_mm,y_mm\n0,0,0\n1e9,0,0\n1e9,1,1\n", "--rate-hz", "1000")
     assert long.returncode == 4 and "seconds" in long.stderr, long
 

@@ -155,6 +155,12 @@ class Pose(unittest.TestCase):
             done = run(*base, *more, *flags)
             self.assertNotEqual(done.returncode, 0, flags)
             self.assertIn(said, done.stderr)
+        idle = run(*base, "--model", self.models["pose"], "--still", "static.trc")
+        self.assertEqual(idle.returncode, 2)
+        self.assertIn("--still static.trc would have no effect", idle.stderr)
+        nothing = run(EVAL, "pose", "--motion", "demo")
+        self.assertEqual(nothing.returncode, 2)
+        self.assertIn("or a script, .json", nothing.stderr)
 
 
 if __name__ == "__main__":
