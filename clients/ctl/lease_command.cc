@@ -41,6 +41,11 @@ Result<void> TakeOver(Session& session) {
 Result<void> RunLease(bool take_over, const Shared& shared) {
   const auto session = OpenSimulation(shared, {"skeletons", "characters"}, "footing-sim");
   if (!session) return session.error();
+  if ((*session)->welcome().server_id() == "footingd") {
+    return UsageError(
+        "lease: this address is footingd's; connect to footing-sim, or, to take over the lease of "
+        "footingd, add --of footingd --take-over");
+  }
   const auto holder = ReadHolder(**session);
   if (!holder) return holder.error();
   if (take_over) {
@@ -72,9 +77,11 @@ Result<void> TakeOverFootingd(bool take_over, const Shared& shared) {
 void AddLeaseCommand(CLI::App& app, Shared& shared) {
   const auto take_over = std::make_shared<bool>(false);
   const auto of = std::make_shared<std::string>("footing-sim");
-  CLI::App* command =
-      app.add_subcommand("lease", "Print who holds a server's lease, or take it over");
-  command->add_option("--of", *of, "Server of the lease")
+  CLI::App* command = app.add_subcommand(
+      "lease", "Print who holds the lease of footing-sim, or take over a server's lease");
+  command
+      ->add_option("--of", *of,
+                   "Server of the lease; that of footingd can be taken over, not printed")
       ->check(CLI::IsMember({"footing-sim", "footingd"}))
       ->capture_default_str();
   command->add_flag("--take-over", *take_over,

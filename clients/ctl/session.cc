@@ -19,14 +19,17 @@ namespace {
 constexpr std::uint32_t kQueueTicks = 512;
 constexpr const char* kFolderOfService = "/run/footing";
 
-/// What to do when no footingd answers.
-std::string Remedy() {
+/// What to do when no footingd answers; `link` says why.
+std::string Remedy(const std::string& link) {
+  // Something answers: a server that is started would not help, and the link says what would.
+  if (link.find("does not speak TLS") != std::string::npos) return "";
   const bool closed = access(kFolderOfService, F_OK) == 0 && access(kFolderOfService, X_OK) != 0;
   if (closed) {
-    return "the service's socket is for the group footing: sudo usermod -aG footing $USER, then "
+    return "; the service's socket is for the group footing: sudo usermod -aG footing $USER, then "
            "log in again";
   }
-  return "start it (sudo systemctl start footingd, or footingd in a terminal), or name its address "
+  return "; start it (sudo systemctl start footingd, or footingd in a terminal), or name its "
+         "address "
          "with --connect";
 }
 
@@ -77,7 +80,7 @@ class Session::Implementation {
     if (waited == Waited::kInterrupted) return Failure("stopped");
     if (waited == Waited::kDone && !refused_) return {};
     if (refused_) return Failure(link_);
-    return NoDevice("no footingd: " + link_ + "; " + Remedy());
+    return NoDevice("no footingd: " + link_ + Remedy(link_));
   }
 
   Result<v1::CommandResult> Call(v1::Command command, double within_s) {

@@ -12,7 +12,6 @@
 #include "common/clock/clock.h"
 #include "common/transport/client.h"
 #include "common/units/units.h"
-#include "common/wire/scalar.h"
 #include "common/wire/wire.h"
 
 namespace footing::game {
@@ -115,14 +114,10 @@ class Host {
     }
     Take(tick, seen_);
     if (ending_ || tick.characters().characters_size() == 0) return;
-    const v1::Character& character = tick.characters().characters(0);
     hand_.known =
         NanosecondsToSeconds(clock::MonotonicNs() - inclined_ns_) < kHandS && inclined_ns_ != 0;
-    const Frame frame{wire::Finite(tick.characters().time_s()),
-                      wire::Finite(character.gait().commanded_speed_mps()),
-                      character.gait().commanded_by_stream(), wire::FromProto(character.trial())};
     if (seen_.track().segments.empty()) return;
-    Send(director_.Advance(frame, seen_, hand_));
+    Send(director_.Advance(FrameOf(tick), seen_, hand_));
     if (director_.game().phase == stream::GamePhase::kOver) End();
   }
 

@@ -54,6 +54,19 @@ bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand) {
   return editor != nullptr;
 }
 
+Frame FrameOf(const v1::Tick& tick) {
+  const v1::Character& character = tick.characters().characters(0);
+  const stream::InterfaceState interface = wire::FromProto(character.interface());
+  Frame frame;
+  frame.time_s = wire::Finite(tick.characters().time_s());
+  frame.commanded_speed_mps = wire::Finite(character.gait().commanded_speed_mps());
+  frame.commanded = character.gait().commanded_by_stream();
+  frame.runner_silent =
+      interface.activity == stream::Activity::kAbsent || interface.missing_roles != 0;
+  frame.trial = wire::FromProto(character.trial());
+  return frame;
+}
+
 v1::Command ToCommand(const Piece& piece) {
   v1::Command command;
   v1::AppendSegment& append = *command.mutable_append_segment();

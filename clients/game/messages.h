@@ -1,5 +1,6 @@
 #pragma once
 
+#include "clients/game/rules/director.h"
 #include "clients/game/rules/facts.h"
 #include "clients/game/rules/piece.h"
 #include "footing/v1/command.pb.h"
@@ -15,6 +16,9 @@ void Take(const v1::Tick& tick, Collector& collector);
 /// sends samples; `hand` stays where the tick says nothing. True when the tick knows how it is
 /// inclined.
 bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand);
+
+/// What a tick of footing-sim with a character reports of it.
+Frame FrameOf(const v1::Tick& tick);
 
 v1::Command ToCommand(const Piece& piece);
 

@@ -44,9 +44,10 @@ motion::C3dPlate PlateOf(const Eigen::AlignedBox2d& box, int first_channel) {
 
 }  // namespace
 
-motion::C3d ToC3d(const motion::Motion& motion, const std::vector<FootForces>& forces) {
+motion::C3d ToC3d(const motion::Motion& motion, const std::vector<bool>& valid,
+                  const std::vector<FootForces>& forces) {
   motion::C3d c3d;
-  c3d.points = motion::ToWorld(motion::FileAxes::kYUp, JointPlaces(motion));
+  c3d.points = motion::ToWorld(motion::FileAxes::kYUp, JointPlaces(motion, valid));
   c3d.x_screen = "+X";
   c3d.y_screen = "+Z";
   c3d.analog_rate_hz = motion.rate_hz;

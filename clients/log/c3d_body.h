@@ -14,7 +14,9 @@ namespace footing::log_client {
 /// Plate 1 is the left foot, plate 2 the right one. Both are one rectangle of the floor that holds
 /// all centres of pressure, and of type 2: three forces on the person and three moments about the
 /// rectangle's middle, in axes x ahead, y right, z down. Only the vertical force and the moments
-/// that it causes are known; the others are 0.
-motion::C3d ToC3d(const motion::Motion& motion, const std::vector<FootForces>& forces);
+/// that it causes are known; the others are 0. The points of a frame that is not `valid` are not
+/// seen.
+motion::C3d ToC3d(const motion::Motion& motion, const std::vector<bool>& valid,
+                  const std::vector<FootForces>& forces);
 
 }  // namespace footing::log_client

@@ -1,5 +1,6 @@
 #include "clients/log/commands.h"
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -54,6 +55,11 @@ Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::str
   for (const std::string& text : addresses) {
     const Result<transport::Address> address = transport::ParseAddress(text);
     if (!address) return address.error();
+    const bool again = std::any_of(
+        options.addresses.begin(), options.addresses.end(),
+        [&](const transport::Address& other) { return other.Text() == address->Text(); });
+    if (again)
+      return UsageError("--connect " + text + " is named twice: each message would be, too");
     options.addresses.push_back(*address);
   }
   if (addresses.empty()) {
@@ -87,6 +93,7 @@ Result<ordered_json> RunBodies(const std::string& file, const std::string& forma
     out["files"].push_back({{"path", motion.path},
                             {"subject", motion.subject},
                             {"frames", motion.frames},
+                            {"invalid_frames", motion.invalid_frames},
                             {"rate_hz", motion.rate_hz},
                             {"begin_s", motion.begin_s}});
   }

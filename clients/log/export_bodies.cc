@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -21,7 +22,7 @@
 
 namespace footing::log_client {
 
-motion::MarkerTracks JointPlaces(const motion::Motion& motion) {
+motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector<bool>& valid) {
   motion::MarkerTracks tracks;
   tracks.rate_hz = motion.rate_hz;
   body::Kinematics at(motion.skeleton);
@@ -29,7 +30,13 @@ motion::MarkerTracks JointPlaces(const motion::Motion& motion) {
     tracks.names.push_back(motion.skeleton.joint(i).name);
     tracks.p.emplace_back(3, motion.frames());
   }
+  const Eigen::Vector3d unseen =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    if (!valid[static_cast<std::size_t>(frame)]) {
+      for (Eigen::Matrix3Xd& track : tracks.p) track.col(frame) = unseen;
+      continue;
+    }
     body::ComputeKinematics(motion.skeleton, motion.q.col(frame), at);
     for (std::size_t i = 0; i < tracks.p.size(); ++i) {
       const Eigen::Vector3d& p_W = at.p_WJ[i];
@@ -58,20 +65,39 @@ Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
                                 {table.name, motion::WriteTable(table)}};
 }
 
+/// A motion, and which of its frames are valid.
+struct Gathered {
+  motion::Motion motion;
+  std::vector<bool> valid;
+
+  std::uint64_t invalid_frames() const {
+    return static_cast<std::uint64_t>(std::count(valid.begin(), valid.end(), false));
+  }
+};
+
+Result<Gathered> Gather(const MotionGatherer& gatherer) {
+  Result<motion::Motion> motion = gatherer.Finish();
+  if (!motion) return motion.error();
+  Result<std::vector<bool>> valid = gatherer.Valid();
+  if (!valid) return valid.error();
+  return Gathered{std::move(motion).value(), std::move(valid).value()};
+}
+
 /// The files of one person, whose names begin with `name`.
-Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const motion::Motion& motion,
+Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const Gathered& gathered,
                                        BodyFormat format, const std::string& name) {
+  const auto& [motion, valid] = gathered;
   if (format == BodyFormat::kBvh) {
     return std::vector<NamedText>{{name + ".bvh", motion::WriteBvh(motion)}};
   }
   if (format == BodyFormat::kTrc) {
     return std::vector<NamedText>{
-        {name + ".trc", motion::WriteTrc(JointPlaces(motion), name + ".trc")}};
+        {name + ".trc", motion::WriteTrc(JointPlaces(motion, valid), name + ".trc")}};
   }
   const auto forces = gatherer.Forces();
   if (!forces) return forces.error();
   if (format == BodyFormat::kMot) return MotTexts(motion, *forces, name);
-  const auto c3d = motion::WriteC3d(ToC3d(motion, *forces));
+  const auto c3d = motion::WriteC3d(ToC3d(motion, valid, *forces));
   if (!c3d) return c3d.error();
   return std::vector<NamedText>{{name + ".c3d", *c3d}};
 }
@@ -162,11 +188,11 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
   std::vector<ExportedMotion> exported;
   int people = 0;
   for (const MotionGatherer& gatherer : *gatherers) {
-    const auto motion = gatherer.Finish();
-    if (!motion) return InvalidData(recording + ": " + motion.error().message);
+    const auto gathered = Gather(gatherer);
+    if (!gathered) return InvalidData(recording + ": " + gathered.error().message);
     const std::string code = gatherer.subject().empty() ? "" : "_" + gatherer.subject();
     const auto texts =
-        Written(gatherer, *motion, format, "pose_" + std::to_string(++people) + code);
+        Written(gatherer, *gathered, format, "pose_" + std::to_string(++people) + code);
     if (!texts) return InvalidData(recording + ": " + texts.error().message);
     for (const NamedText& one : *texts) {
       const std::string path = folder + "/" + one.name;
@@ -174,7 +200,8 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
       if (!out) return out.error();
       if (const auto written = out->Write(one.text); !written) return written.error();
       exported.push_back(
-          {path, gatherer.subject(), static_cast<std::uint64_t>(motion->frames()), motion->rate_hz,
+          {path, gatherer.subject(), gathered->valid.size(), gathered->invalid_frames(),
+           gathered->motion.rate_hz,
            1e-9 * static_cast<double>(gatherer.begin_ns() - walker.first_ns()) - gatherer.lag_s()});
     }
   }

@@ -15,12 +15,14 @@ struct ExportedMotion {
   std::string path;
   std::string subject;  ///< Code; empty where nobody was named.
   std::uint64_t frames = 0;
+  std::uint64_t invalid_frames = 0;  ///< Of `frames`: the engine reported them as not valid.
   double rate_hz = 0;
   double begin_s = 0;  ///< Its first frame, from the recording's first message on.
 };
 
 /// The joints of every frame, in the axes of TRC files (OpenSim: x ahead, y up, z right), from 0 s.
-motion::MarkerTracks JointPlaces(const motion::Motion& motion);
+/// They are not seen in a frame that is not `valid`.
+motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector<bool>& valid);
 
 enum class BodyFormat {
   kBvh,  ///< Skeleton and rotations.
@@ -32,6 +34,9 @@ enum class BodyFormat {
 /// Writes a file for each subject of a recording of the pose engine into `folder`:
 /// "pose_1_p07.bvh", ...; of kMot "pose_1_p07.mot" and "pose_1_p07_grf.mot". A recording without
 /// one is InvalidData; an existing file is a usage error, unless `replace`.
+///
+/// Where the pose is not valid, the places of joints have a gap; rotations and angles, whose files
+/// cannot have one, keep the pose.
 Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
                                                  const std::string& folder, BodyFormat format,
                                                  bool replace);

@@ -49,6 +49,15 @@ Result<body::Skeleton> SkeletonOf(const v1::Skeleton& skeleton, const v1::Charac
   return body::MakeSkeleton(std::move(joints));
 }
 
+/// Whether the load of a foot is of this frame. Without both boards the engine repeats the last
+/// loads of both feet, while each insole counts on its own.
+bool IsFresh(const v1::BodyState& body, int side) {
+  const auto measured = [&body](int foot) {
+    return foot >= body.feet_told_size() || body.feet_told(foot);
+  };
+  return measured(side) && (body.contact_source() == "insoles" || measured(1 - side));
+}
+
 void SetPose(const body::Skeleton& skeleton, const v1::Character& character,
              Eigen::Ref<Eigen::VectorXd> q) {
   q.head<3>() = PlaceOf(character, 0);
@@ -141,11 +150,21 @@ Result<std::vector<FootForces>> MotionGatherer::Forces() const {
     const v1::BodyState& body = frames_[grid->frames[then]].characters(0).body();
     for (int side = 0; side < std::min(2, body.feet_size()); ++side) {
       const v1::BodyFoot& foot = body.feet(side);
-      if (!foot.cop_valid() || !(foot.load_n() > 0)) continue;
+      if (!foot.cop_valid() || !(foot.load_n() > 0) || !IsFresh(body, side)) continue;
       forces[i][static_cast<std::size_t>(side)] = {foot.load_n(), wire::FromProto(foot.cop_m())};
     }
   }
   return forces;
+}
+
+Result<std::vector<bool>> MotionGatherer::Valid() const {
+  const auto grid = MakeGrid();
+  if (!grid) return grid.error();
+  std::vector<bool> valid;
+  for (const std::size_t frame : grid->frames) {
+    valid.push_back(frames_[frame].characters(0).valid());
+  }
+  return valid;
 }
 
 }  // namespace footing::log_client

@@ -24,9 +24,12 @@ class MotionGatherer {
   /// Nothing where no frame was taken. InvalidData where frames and skeleton do not fit, or time
   /// does not go on.
   Result<motion::Motion> Finish() const;
-  /// The loads of the feet at the instants of the poses of Finish(); where the centre of pressure
-  /// of a foot is not known it has none.
+  /// The loads of the feet at the instants of the poses of Finish(). A foot has none where its
+  /// centre of pressure is not known, or while the boards or its insole measure nothing: the engine
+  /// repeats the last load then.
   Result<std::vector<FootForces>> Forces() const;
+  /// Whether the engine reported each pose of Finish() as valid.
+  Result<std::vector<bool>> Valid() const;
   bool empty() const { return frames_.empty(); }
   const std::string& subject() const { return subject_; }
   /// How much older than its frame a pose is.

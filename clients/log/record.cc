@@ -146,8 +146,10 @@ class Recording {
 
   Result<RecordReport> Finish() {
     if (!written_) {
-      return Failure(written_.error().message + "; what was written before is kept: footing-log " +
-                     "repair " + writer_.path() + " --out NEW.mcap");
+      return Failure(written_.error().message +
+                     (writer_.empty() ? "; nothing was recorded"
+                                      : "; what was written before is kept: footing-log repair " +
+                                            writer_.path() + " --out NEW.mcap"));
     }
     RecordReport report;
     std::string waited_for;

@@ -23,11 +23,11 @@ namespace {
 
 constexpr std::size_t kMostClipBytes = std::size_t{256} << 20;  // Three hours at 30 Hz.
 
-/// What --units, --factor, --offset, --flip-y and --mirrored say.
+/// What --units, --factor, --offset, --flip-y, --mirrored and --swap-sides say.
 struct DialectFlags {
   std::string units = "dialect";
   std::vector<double> factor{1, 1, 1}, offset{0, 0, 0};
-  bool flip_y = false, mirrored = false;
+  bool flip_y = false, mirrored = false, swap_sides = false;
 
   void Add(CLI::App& app) {
     app.add_option("--units", units,
@@ -43,6 +43,9 @@ struct DialectFlags {
         ->delimiter(',');
     app.add_flag("--flip-y", flip_y, "The sender's y points down");
     app.add_flag("--mirrored", mirrored, "The sender shows a mirror image");
+    app.add_flag(
+        "--swap-sides", swap_sides,
+        "The sender swaps the names of left and right; with --mirrored: it negates x only");
   }
 
   Result<DialectOptions> Options() const {
@@ -55,6 +58,7 @@ struct DialectFlags {
     if (!options.offset.allFinite()) return UsageError("--offset: not a number");
     options.flip_y = flip_y;
     options.mirrored = mirrored;
+    options.swap_sides = swap_sides;
     return options;
   }
 };

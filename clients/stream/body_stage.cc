@@ -50,12 +50,15 @@ Result<choreography::Script> ReadChoreography(const std::string& motion) {
   return choreography::ParseScript(*text, motion);
 }
 
-Result<sensors::Scene> PerformScript(const StageOptions& options) {
+/// `repeats`: whether it ends in the T-pose, in which it begins.
+Result<sensors::Scene> PerformScript(const StageOptions& options, bool& repeats) {
   const auto script = ReadChoreography(options.motion);
   if (!script) return script.error();
   const auto body = choreography::Performer(options.height_m, options.mass_kg);
   if (!body) return body.error();
-  log::Info("performing " + options.motion + Text(", %.0f s", script->duration_s()));
+  repeats = script->EndsInTPose();
+  log::Info("performing " + options.motion + Text(", %.0f s", script->duration_s()) +
+            (repeats ? ", again and again" : ", once, since it does not end in the T-pose"));
   const auto made = choreography::Perform(
       *script, *body, 100, [](double done) { log::Info(Text("performing: %.0f %%", 100 * done)); });
   log::Info(Text("performed; its centre of pressure is the script's within %.1f mm",
@@ -201,11 +204,10 @@ sensors::FootForce Stage::FootAt(std::size_t foot, double t_s) const {
 
 Result<std::shared_ptr<const Stage>> MakeStage(const StageOptions& options) {
   const bool made = !IsPath(options.motion) || options.motion.ends_with(".json");
-  auto scene = made ? PerformScript(options) : LoadRecording(options);
-  if (!scene) return scene.error();
   Stage stage;
+  auto scene = made ? PerformScript(options, stage.repeats) : LoadRecording(options);
+  if (!scene) return scene.error();
   stage.scene = *std::move(scene);
-  stage.repeats = made;
   stage.feet = sensors::ShareThroughout(
       stage.scene, [](double done) { log::Info(Text("forces: %.0f %%", 100 * done)); });
   const Eigen::Vector2d start =

@@ -7,6 +7,7 @@
 #include "common/config/data_file.h"
 #include "common/config/lines_of_keys.h"
 #include "common/text/json_text.h"
+#include "common/text/lines.h"
 #include "common/text/utf8.h"
 
 namespace footing::config {
@@ -91,11 +92,19 @@ void Binder::TextList(const std::string& key, std::vector<std::string>& value,
 void Binder::TextMap(const std::string& key, std::map<std::string, std::string>& value,
                      const std::string& documentation,
                      std::function<std::string(const std::string&)> check) {
-  auto assign = [&value, check = std::move(check)](const Json& json) {
-    if (!json.is_object()) return false;
+  auto why = [check = std::move(check)](const Json& json) -> std::string {
+    if (!json.is_object()) return "";
+    for (const auto& [name, item] : json.items()) {
+      const std::string problem = item.is_string() ? check(item.get<std::string>()) : "";
+      if (!problem.empty()) return text::Quoted(name) + ": " + problem;
+    }
+    return "";
+  };
+  auto assign = [&value, why](const Json& json) {
+    if (!json.is_object() || !why(json).empty()) return false;
     std::map<std::string, std::string> map;
     for (const auto& [name, item] : json.items()) {
-      if (!item.is_string() || !check(item.get<std::string>()).empty()) return false;
+      if (!item.is_string()) return false;
       map[name] = item.get<std::string>();
     }
     value = std::move(map);
@@ -103,6 +112,7 @@ void Binder::TextMap(const std::string& key, std::map<std::string, std::string>&
   };
   entries_.push_back({key, "an object of strings (" + documentation + ")", documentation, assign,
                       [&value] { return Json(value); }});
+  entries_.back().why = why;
 }
 
 const Binder::Entry* Binder::Find(const std::string& key) const {
@@ -134,6 +144,9 @@ Result<void> Binder::Assign(const std::string& key, const Json& value, const std
     return UsageError(what_ + ": unknown key \"" + key + "\" in " + where + "; " + AllKeys());
   }
   if (!entry->assign(value)) {
+    if (const std::string why = entry->why ? entry->why(value) : ""; !why.empty()) {
+      return UsageError(what_ + ": " + key + " in " + where + ": " + why);
+    }
     const std::string shown = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     return UsageError(what_ + ": " + key + " = " + shown + " in " + where + "; it must be " +
                       entry->allowed);

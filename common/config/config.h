@@ -67,6 +67,8 @@ class Binder {
     std::function<nlohmann::ordered_json()> read;
     bool text = false;
     std::string origin = "default";
+    /// What exactly is wrong with a value that is not assigned, where `allowed` does not say it.
+    std::function<std::string(const nlohmann::ordered_json&)> why = {};
   };
 
   /// `where` is named in errors, `origin` in PrintOrigins.

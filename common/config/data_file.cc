@@ -1,13 +1,11 @@
 #include "common/config/data_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "common/config/regular_file.h"
 #include "common/text/joined.h"
 
 namespace footing::config {
@@ -56,20 +54,14 @@ Result<std::string> FindDataFile(const std::string& name, const std::string& fol
 }
 
 Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return Failure("cannot open " + path + ": " + std::strerror(errno));
-  const std::streamoff size = file.tellg();
-  std::error_code unknown;
-  if (size < 0 || std::filesystem::is_directory(path, unknown))
-    return Failure("cannot read " + path + ": not a regular file");
-  if (static_cast<std::size_t>(size) > max_bytes) {
-    return InvalidData(path + " has " + std::to_string(size) + " bytes, more than the " +
+  const auto file = RegularFile::Open(path);
+  if (!file) return Failure("cannot open " + path + ": " + file.error().message);
+  if (file->size() > max_bytes) {
+    return InvalidData(path + " has " + std::to_string(file->size()) + " bytes, more than the " +
                        std::to_string(max_bytes) + " it may have");
   }
-  std::string text(static_cast<std::size_t>(size), '\0');
-  file.seekg(0);
-  file.read(text.data(), size);
-  if (!file) return Failure("cannot read " + path + " to its end");
+  auto text = file->Read(max_bytes);
+  if (!text) return Failure("cannot read " + path + ": " + text.error().message);
   return text;
 }
 

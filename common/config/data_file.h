@@ -11,7 +11,7 @@ namespace footing::config {
 /// places.
 Result<std::string> FindDataFile(const std::string& name, const std::string& folder = "");
 
-/// The whole text of a file of at most `max_bytes`.
+/// The whole text of a regular file of at most `max_bytes` (RegularFile).
 Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes = 4u << 20);
 
 /// The file at a path (it has a / or ends in .json), otherwise the built-in file

@@ -8,6 +8,8 @@
 
 #include "common/config/data_file.h"
 #include "common/text/json_text.h"
+#include "common/text/number.h"
+#include "common/units/units.h"
 
 namespace footing::frames {
 namespace {
@@ -123,6 +125,31 @@ Result<HeldSphere> ReadSphere(const json& object, const std::string& place) {
   return sphere;
 }
 
+/// Which two spheres would be taken for each other, and why; empty for none.
+std::string Confusable(const std::vector<HeldSphere>& spheres) {
+  constexpr double kLeastApartDeg = 30;  // Within that a blob has a sphere's hue.
+  const auto chroma = [&](std::size_t i) -> Eigen::Vector3d {
+    const Eigen::Vector3d& colour_dn = spheres[i].target.colour_dn;
+    return (colour_dn.array() - colour_dn.mean()).matrix().normalized();
+  };
+  for (std::size_t b = 1; b < spheres.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const std::string both = "spheres " + std::to_string(a + 1) + " and " + std::to_string(b + 1);
+      if (spheres[a].role == spheres[b].role) {
+        return both + " both have the role " + stream::Name(spheres[a].role);
+      }
+      const double apart_deg =
+          RadiansToDegrees(std::acos(std::clamp(chroma(a).dot(chroma(b)), -1.0, 1.0)));
+      if (apart_deg >= kLeastApartDeg) continue;
+      return both + ": their colours are " + text::Fixed(apart_deg, 0) +
+             " degrees of hue apart, and could be mistaken for each other; choose lights at "
+             "least " +
+             text::Fixed(kLeastApartDeg, 0) + " degrees apart";
+    }
+  }
+  return "";
+}
+
 void ReadLens(Reader& reader, sphere::Lens& lens) {
   reader.Integer("width", lens.width, 32, 4096);
   reader.Integer("height", lens.height, 32, 4096);
@@ -155,6 +182,9 @@ void ReadSensor(Reader& reader, CameraFile& camera) {
   }
   reader.Number("rate_hz", camera.rate_hz, 1, 1000);
   reader.Number("readout_s", camera.readout_s, 0, 1);
+  if (camera.readout_s * camera.rate_hz > 1) {
+    reader.Fail("readout_s", "must be at most the time between frames, 1 / rate_hz");
+  }
   reader.Number("exposure_s", camera.settings.shutter.exposure_s, 1e-5, 1);
   camera.settings.shutter.row_s = camera.readout_s / (camera.lens.height - 1);
   camera.settings.shutter.period_s = 1 / camera.rate_hz;
@@ -194,14 +224,17 @@ Result<CameraFile> Parse(const std::string& text, const std::string& origin, boo
   const json* spheres = reader.Find("spheres");
   const bool is_missing = spheres == nullptr && !with_spheres;
   if (!is_missing &&
-      (spheres == nullptr || !spheres->is_array() || spheres->empty() || spheres->size() > 8)) {
-    reader.Fail("spheres", "must be a list of 1 to 8 spheres; footing-camera calibrate writes it");
+      (spheres == nullptr || !spheres->is_array() || spheres->empty() || spheres->size() > 3)) {
+    reader.Fail("spheres", "must be a list of 1 to 3 spheres; footing-camera calibrate writes it");
   }
   if (const std::string problem = reader.Problem(); !problem.empty()) return InvalidData(problem);
   for (std::size_t i = 0; !is_missing && i < spheres->size(); ++i) {
     const auto held = ReadSphere((*spheres)[i], origin + ", sphere " + std::to_string(i + 1));
     if (!held) return held.error();
     camera.spheres.push_back(*held);
+  }
+  if (const std::string problem = Confusable(camera.spheres); !problem.empty()) {
+    return InvalidData(origin + ", " + problem);
   }
   return camera;
 }

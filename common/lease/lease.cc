@@ -1,20 +1,15 @@
 #include "common/lease/lease.h"
 
-#include <algorithm>
 #include <utility>
 
+#include "common/text/utf8.h"
 #include "common/units/units.h"
 
 namespace footing::lease {
 namespace {
 
 bool IsName(const std::string& holder) {
-  constexpr unsigned char kFirstPrinted = 0x20, kDelete = 0x7f;
-  return !holder.empty() && holder.size() <= Lease::kMaxHolder &&
-         std::all_of(holder.begin(), holder.end(), [](char c) {
-           const auto byte = static_cast<unsigned char>(c);
-           return byte >= kFirstPrinted && byte != kDelete;
-         });
+  return !holder.empty() && holder.size() <= Lease::kMaxHolder && text::IsPrintable(holder);
 }
 
 }  // namespace

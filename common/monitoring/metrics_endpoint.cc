@@ -124,17 +124,20 @@ class MetricsEndpoint::Implementation {
   std::unique_ptr<transport::Listener> listener_;
 };
 
+Result<void> MetricsEndpoint::Check(const std::string& address) {
+  const auto parsed = transport::ParseAddress(address);
+  if (!parsed) return parsed.error();
+  if (!parsed->OverTcp()) return {};
+  return UsageError("metrics are served on a Unix socket only, not on " + address +
+                    "; use unix:PATH, with a proxy in front of it for a Prometheus server");
+}
+
 Result<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Open(boost::asio::io_context& io,
                                                                const std::string& address,
                                                                std::function<std::string()> text) {
-  const auto parsed = transport::ParseAddress(address);
-  if (!parsed) return parsed.error();
-  if (parsed->kind == transport::Address::Kind::kTcp ||
-      parsed->kind == transport::Address::Kind::kTls) {
-    return UsageError("metrics are served on a Unix socket only, not on " + address +
-                      "; use unix:PATH, with a proxy in front of it for a Prometheus server");
-  }
+  if (const auto checked = Check(address); !checked) return checked.error();
   auto implementation = std::make_unique<Implementation>(std::move(text));
+  const auto parsed = transport::ParseAddress(address);
   if (const auto listening = implementation->Listen(io, *parsed); !listening) {
     return listening.error();
   }

@@ -16,7 +16,9 @@ namespace footing::monitoring {
 /// may have 4 KiB of header and no body. Everything runs on the io_context's one thread.
 class MetricsEndpoint {
  public:
-  /// Listens on `address`, unix:PATH or fd:NAME (usage error for others), mode 0660. `text` gives
+  /// Usage error for an address that is neither unix:PATH nor fd:NAME.
+  static Result<void> Check(const std::string& address);
+  /// Listens on `address` (Check), mode 0660. `text` gives
   /// the page.
   static Result<std::unique_ptr<MetricsEndpoint>> Open(boost::asio::io_context& io,
                                                        const std::string& address,

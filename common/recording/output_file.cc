@@ -56,19 +56,24 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       created_(other.created_),
-      begun_(other.begun_) {}
+      begun_(other.begun_),
+      empty_(other.empty_),
+      failed_(other.failed_) {}
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(created_, other.created_);
   std::swap(begun_, other.begun_);
+  std::swap(empty_, other.empty_);
+  std::swap(failed_, other.failed_);
   return *this;
 }
 
 OutputFile::~OutputFile() {
   if (descriptor_ < 0) return;
-  if (created_ && !begun_ && IsAt(path_, descriptor_)) ::unlink(path_.c_str());
+  const bool vain = !begun_ || (failed_ && empty_);
+  if (created_ && vain && IsAt(path_, descriptor_)) ::unlink(path_.c_str());
   ::close(descriptor_);
 }
 
@@ -79,7 +84,9 @@ Result<void> OutputFile::Write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
+    failed_ = failed_ || written < 0;
     if (written < 0) return Failure("cannot write " + path_ + ": " + std::strerror(errno));
+    empty_ = empty_ && written == 0;
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
   return {};

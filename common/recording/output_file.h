@@ -12,7 +12,7 @@ Result<void> CheckCreatable(const std::string& path, bool replace);
 
 /// A new file that is written from its start to its end, readable by its owner alone: recordings
 /// are people's movements. Until the first Write() an existing file keeps its contents, and a file
-/// without one leaves the path as it was.
+/// without one leaves the path as it was, as does a new file of which no byte could be written.
 class OutputFile {
  public:
   /// An existing file is a usage error that says so, unless `replace`.
@@ -31,6 +31,8 @@ class OutputFile {
   Result<void> Sync();
 
   const std::string& path() const { return path_; }
+  /// No byte has been written.
+  bool empty() const { return empty_; }
 
  private:
   OutputFile(std::string path, int descriptor, bool created)
@@ -40,6 +42,8 @@ class OutputFile {
   int descriptor_ = -1;
   bool created_ = false;  ///< Did not exist before.
   bool begun_ = false;    ///< Write() was called.
+  bool empty_ = true;
+  bool failed_ = false;  ///< A Write() was.
 };
 
 }  // namespace footing::recording

@@ -46,6 +46,7 @@ class RecordingWriter {
   bool pending() const { return writer_.pending(); }
   const mcap::Statistics& statistics() const { return writer_.statistics(); }
   const std::string& path() const { return file_.path(); }
+  bool empty() const { return file_.empty(); }  ///< No byte is in the file.
 
  private:
   RecordingWriter(OutputFile file, const WriterSettings& settings);

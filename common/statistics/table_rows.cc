@@ -14,8 +14,6 @@ namespace {
 constexpr double kGreatestValue = 1e100;   // Squares and their sums stay finite.
 constexpr double kGreatestExposure = 1e9;  // In any unit; so is the least, 1e-9.
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 /// Places of the columns in a row.
 struct Columns {
   std::size_t count = 0;
@@ -122,7 +120,6 @@ Error TableFault(const TableRequest& request, std::size_t line, const std::strin
 }
 
 Result<TableRows> ReadRows(std::string_view text, const TableRequest& request) {
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   text::Lines lines(text, request.file);
   const auto header = lines.NextRow();
   if (!header) {

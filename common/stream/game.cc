@@ -1,6 +1,9 @@
 #include "common/stream/game.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "common/text/utf8.h"
 
 namespace footing::stream {
 namespace {
@@ -8,6 +11,16 @@ namespace {
 constexpr std::size_t kMostNameBytes = 24;
 constexpr std::size_t kMostTextBytes = 200;
 constexpr std::size_t kMostRounds = 20;
+/// Line and paragraph separators, and what turns the direction of all text behind it (UAX 9).
+constexpr const char* kLayoutControls[] = {"\u2028", "\u2029", "\u202a", "\u202b",
+                                           "\u202c", "\u202d", "\u202e", "\u2066",
+                                           "\u2067", "\u2068", "\u2069"};
+
+bool ShowsAsOneLine(std::string_view text) {
+  return text::IsPrintable(text) &&
+         std::none_of(std::begin(kLayoutControls), std::end(kLayoutControls),
+                      [&](const char* one) { return text.find(one) != std::string_view::npos; });
+}
 
 }  // namespace
 
@@ -32,8 +45,11 @@ const char* Name(GamePhase phase) {
 }
 
 const char* WhyNotAPlayerName(std::string_view name) {
-  return name.empty() || name.size() > kMostNameBytes ? "a player's name must have 1 to 24 bytes"
-                                                      : nullptr;
+  if (name.empty() || name.size() > kMostNameBytes)
+    return "a player's name must have 1 to 24 bytes";
+  return ShowsAsOneLine(name) ? nullptr
+                              : "a player's name must be printable UTF-8 text, without control "
+                                "characters or changes of writing direction";
 }
 
 const char* WhyNotAGame(const GameState& game) {
@@ -53,6 +69,9 @@ const char* WhyNotAGame(const GameState& game) {
   }
   if (std::max(game.host.size(), game.note.size()) > kMostTextBytes) {
     return "host and note must have at most 200 bytes";
+  }
+  if (!ShowsAsOneLine(game.host) || !ShowsAsOneLine(game.note)) {
+    return "host and note must be printable UTF-8 text";
   }
   return nullptr;
 }

@@ -60,11 +60,12 @@ struct GameState {
 };
 
 /// Why a text cannot be the name of a player, as text of static storage; null when it can: 1 to 24
-/// bytes.
+/// bytes of UTF-8 that a terminal shows as one line, without control characters, line separators or
+/// changes of writing direction.
 const char* WhyNotAPlayerName(std::string_view name);
 
 /// Why a state cannot be that of a game, as text of static storage; null when it can: two players
-/// with names of 1 to 24 bytes, at most 20 rounds, indices of players below 2, short texts.
+/// with such names, at most 20 rounds, indices of players below 2, short texts of one line.
 const char* WhyNotAGame(const GameState& game);
 
 /// Index of the player with more points, once a game is over; nothing for a draw or before.

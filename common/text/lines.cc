@@ -12,6 +12,11 @@ constexpr std::string_view kBlanks = " \t\r\f\v";
 
 }  // namespace
 
+Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+}
+
 std::optional<std::string_view> Lines::Next() {
   if (rest_.empty()) return std::nullopt;
   const auto end = rest_.find('\n');

@@ -14,7 +14,8 @@ namespace footing::text {
 /// The lines of a text, one after the other, without their ends (LF or CR LF).
 class Lines {
  public:
-  Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {}
+  /// Without a byte order mark at its beginning, as spreadsheets and editors of Windows write it.
+  Lines(std::string_view text, std::string file);
 
   /// The next line, or nothing at the end.
   std::optional<std::string_view> Next();

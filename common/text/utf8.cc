@@ -32,6 +32,18 @@ bool IsUtf8(std::string_view text) {
   return true;
 }
 
+bool IsPrintable(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = SequenceLength(text, at);
+    const std::string_view one = text.substr(at, length);
+    const bool control =
+        one < " " || (one >= "\x7f" && length == 1) || (length == 2 && one < "\u00a0");
+    if (length == 0 || control) return false;
+    at += length;
+  }
+  return true;
+}
+
 std::size_t Characters(std::string_view text) {
   std::size_t count = 0;
   for (std::size_t at = 0; at < text.size(); ++count) {

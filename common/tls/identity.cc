@@ -1,6 +1,5 @@
 #include "common/tls/identity.h"
 
-#include <fcntl.h>
 #include <openssl/ec.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
@@ -13,6 +12,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/config/regular_file.h"
 #include "common/config/write_file.h"
 #include "common/tls/fingerprint.h"
 
@@ -98,18 +98,13 @@ Result<void> WriteOnce(const std::string& path, const std::string& text) {
 }
 
 Result<std::string> ReadPrivate(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return FileError(path, std::strerror(errno));
-  struct stat status {};
-  std::string text(kLongestFile, '\0');
-  const bool known = fstat(file, &status) == 0;
-  const ssize_t size = read(file, text.data(), text.size());
-  close(file);
-  if (!known || size < 0) return FileError(path, "cannot be read");
-  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+  const auto file = config::RegularFile::Open(path);
+  if (!file) return FileError(path, file.error().message);
+  if (file->Allows(S_IRWXG | S_IRWXO)) {
     return UsageError("identity " + path + " may be read by others; chmod 600 " + path);
   }
-  text.resize(static_cast<std::size_t>(size));
+  auto text = file->Read(kLongestFile);
+  if (!text) return FileError(path, text.error().message);
   return text;
 }
 

@@ -6,9 +6,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 
+#include "common/config/data_file.h"
 #include "common/config/write_file.h"
 #include "common/tls/fingerprint.h"
 
@@ -26,11 +26,11 @@ bool EndsWithinLine(int file) {
 }  // namespace
 
 Result<std::optional<std::string>> KnownServers::Find(const std::string& server) const {
-  std::ifstream file(path_);
-  if (!file) {
-    if (errno == ENOENT) return std::optional<std::string>();
-    return Failure(path_ + ": " + std::strerror(errno));
-  }
+  if (access(path_.c_str(), F_OK) != 0 && errno == ENOENT) return std::optional<std::string>();
+  // What could not be read may have had the server: it must not be taken for a new one.
+  const auto all = config::ReadTextFile(path_);
+  if (!all) return all.error();
+  std::istringstream file(*all);
   std::optional<std::string> found;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -45,8 +45,6 @@ Result<std::optional<std::string>> KnownServers::Find(const std::string& server)
     }
     if (name == server) found = fingerprint;
   }
-  // What could not be read may have had the server: it must not be taken for a new one.
-  if (file.bad()) return Failure(path_ + ": cannot be read");
   return found;
 }
 

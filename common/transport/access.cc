@@ -1,16 +1,20 @@
 #include "common/transport/access.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <sstream>
 #include <utility>
 
-#include "common/config/data_file.h"
+#include "common/config/regular_file.h"
 #include "common/log/log.h"
 #include "common/tls/fingerprint.h"
+#include "common/tls/identity.h"
 #include "common/tls/places.h"
+#include "common/transport/exposure.h"
 #include "common/transport/token.h"
 
 namespace footing::transport {
@@ -18,6 +22,8 @@ namespace {
 
 constexpr std::array<std::pair<const char*, v1::Role>, 3> kRoles{
     {{"view", v1::ROLE_VIEW}, {"log", v1::ROLE_LOG}, {"control", v1::ROLE_CONTROL}}};
+
+constexpr std::size_t kMostClientsBytes = 4u << 20;
 
 v1::Role RoleNamed(const std::string& name) {
   for (const auto& [known, role] : kRoles) {
@@ -37,12 +43,17 @@ void WarnAndWait(const std::shared_ptr<timer::Timer>& timer) {
 
 /// Who may write the file may let anybody in.
 Result<std::map<std::string, v1::Role>> ReadClients(const std::string& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) == 0 && (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+  const auto file = config::RegularFile::Open(path);
+  if (!file) return Failure("clients file " + path + ": " + file.error().message);
+  if (file->Allows(S_IWGRP | S_IWOTH)) {
     return UsageError("clients file " + path + " may be written by others; chmod go-w " + path);
   }
-  const auto text = config::ReadTextFile(path);
-  if (!text) return text.error();
+  if (file->size() > kMostClientsBytes) {
+    return InvalidData("clients file " + path + " has more than " +
+                       std::to_string(kMostClientsBytes) + " bytes");
+  }
+  const auto text = file->Read(kMostClientsBytes);
+  if (!text) return Failure("clients file " + path + ": " + text.error().message);
   auto clients = ParseClients(*text);
   if (!clients) return InvalidData(path + ", " + clients.error().message);
   return clients;
@@ -94,6 +105,25 @@ Result<void> AccessSettings::Apply(ServerOptions& options) const {
   }
   options.identity_file = identity_file.empty() ? tls::DefaultIdentityFile() : identity_file;
   options.insecure_lan = insecure_lan;
+  return {};
+}
+
+Result<void> AccessSettings::CheckStart(const std::vector<std::string>& listen) const {
+  ServerOptions options;
+  if (auto applied = Apply(options); !applied) return applied;
+  const bool has_keys = !options.token.empty() || !options.clients.empty();
+  for (const std::string& text : listen) {
+    const auto address = ParseAddress(text);
+    if (!address) return address.error();
+    if (auto clear = CheckEncrypted(*address, insecure_lan && !token_file.empty()); !clear) {
+      return clear;
+    }
+    if (address->kind != Address::Kind::kTls) continue;
+    if (auto keys = CheckKeys(*address, has_keys); !keys) return keys;
+    const std::string& identity = *options.identity_file;
+    if (access(identity.c_str(), F_OK) != 0 && errno == ENOENT) continue;  // The start makes it.
+    if (auto loaded = tls::Identity::Load(identity); !loaded) return loaded.error();
+  }
   return {};
 }
 

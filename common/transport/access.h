@@ -25,6 +25,9 @@ struct AccessSettings {
   void Bind(config::Binder& binder);
   /// Usage error for settings that do not go together.
   Result<void> Check() const;
+  /// Whether a server with these settings may listen on these addresses: reads the files as Apply
+  /// does, and the certificate where there is one, but opens no socket and makes no file.
+  Result<void> CheckStart(const std::vector<std::string>& listen) const;
   /// Reads the files into the options; an error names the file, and the line.
   Result<void> Apply(ServerOptions& options) const;
   /// Reads token_file and clients_file again, for the sessions that come to the server from now on:

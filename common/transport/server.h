@@ -82,14 +82,15 @@ struct OverloadLine {
 };
 
 struct ServerHandlers {
-  /// A command of a session with role control or admin. Roles below are refused before this is
-  /// called. Without a result the answer comes later, by Server::Answer().
+  /// A command of a session with role control or admin. Roles below, and texts and numbers that no
+  /// command may have (CheckContent), are refused before this is called. Without a result the
+  /// answer comes later, by Server::Answer().
   std::function<std::optional<v1::CommandResult>(const SessionInfo&, const v1::Command&)>
       on_command;
   /// A session is gone: end its leases.
   std::function<void(const SessionInfo&)> on_session_end;
-  /// At most one line in 10 s of each kind: a session is slowed, ticks are late, a channel is too
-  /// long for a tick, or a client is kept out.
+  /// At most one line in 10 s of each kind: a session is slowed or ended, ticks are late, a channel
+  /// is too long for a tick, or a client is refused, for each reason.
   std::function<void(const OverloadLine&)> on_overload = {};
 };
 

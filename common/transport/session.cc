@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/transport/command_content.h"
 #include "common/units/time.h"
 #include "common/units/units.h"
 
@@ -202,6 +203,8 @@ std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
                        " ms had passed");
   } else if (!shared_.handlers.on_command) {
     failed.set_message(shared_.options.server_id + " takes no commands");
+  } else if (const auto content = CheckContent(command); !content) {
+    failed.set_message(content.error().message);
   } else {
     return shared_.handlers.on_command(info_, command);
   }
@@ -216,6 +219,8 @@ void Session::SendPayload(std::string_view payload) {
 
 void Session::Refused(v1::Refused::Reason reason, const std::string& message) {
   ++shared_.statistics.refused;
+  // Who lacks a token or a certificate is said already (SayDenied).
+  if (reason != v1::Refused::REASON_TOKEN) shared_.SayRefused(reason, peer_, message);
   phase_ = Phase::kRefused;
   timer_.cancel();
   v1::Envelope envelope;
@@ -227,6 +232,7 @@ void Session::BadMessage(const std::string& why) {
   if (phase_ == Phase::kHello) {
     Refused(v1::Refused::REASON_BAD_MESSAGE, why);
   } else {
+    SayEnded(why);
     End(why);
   }
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -54,6 +55,11 @@ struct Shared {
   /// The same for who is kept out; the line says how many there were.
   void SayDenied(const std::string& host, const std::string& why);
   TokenBucket denied_lines{0.1, 1};
+  /// And for each kind of refusal; the line says how many there were of all kinds.
+  void SayRefused(v1::Refused::Reason reason, const Peer& peer, const std::string& why);
+  std::map<v1::Refused::Reason, TokenBucket> refused_lines;
+  /// And for sessions that are ended since their client sent what it must not.
+  TokenBucket ended_lines{0.1, 1};
 };
 
 /// One client's connection on the server's side, from Hello to Goodbye.
@@ -121,6 +127,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
   void OnSubscribe(const v1::Subscribe& wish);
   void OnRefill(const v1::Refill& wish);
+  void SayNothingToRefill(const v1::Refill& wish);
   void OnPing(const v1::Ping& ping, std::int64_t arrived_ns);
   void OnCommand(const v1::Command& command, std::int64_t arrived_ns);
   std::optional<v1::CommandResult> Carry(const v1::Command& command, std::int64_t arrived_ns);
@@ -146,6 +153,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   void Refused(v1::Refused::Reason reason, const std::string& message);
   void BadMessage(const std::string& why);
+  void SayEnded(const std::string& why);
   void ArmTimer(double seconds);
   void OnTimer();
   void GrantTime();

@@ -23,6 +23,21 @@ void Shared::SayDenied(const std::string& host, const std::string& why) {
                         std::to_string(statistics.denied) + " since start)"});
 }
 
+void Shared::SayRefused(v1::Refused::Reason reason, const Peer& peer, const std::string& why) {
+  TokenBucket& lines = refused_lines.try_emplace(reason, 0.1, 1).first->second;
+  if (!handlers.on_overload || !lines.Take(NowNs())) return;
+  const std::string who = peer.known ? "of user " + std::to_string(peer.user) : "from " + peer.host;
+  handlers.on_overload({"refused a client " + who + ": " + why + " (" +
+                        std::to_string(statistics.refused) + " since start)"});
+}
+
+void Session::SayEnded(const std::string& why) {
+  if (!shared_.handlers.on_overload || !shared_.ended_lines.Take(shared_.NowNs())) return;
+  shared_.handlers.on_overload(
+      {"session " + std::to_string(info_.session) + " (" + info_.client_name + ") is ended: " + why,
+       info_.session});
+}
+
 void Session::OnSlowed(double wait_s) {
   ++record_.slowed;
   record_.slowed_until_ns = shared_.NowNs() + SecondsToNanoseconds(wait_s);

@@ -89,12 +89,26 @@ void Session::OnRefill(const v1::Refill& wish) {
   if (phase_ != Phase::kSubscribed) return BadMessage("Refill came before Subscribe");
   const std::uint64_t last = std::min(wish.to_sequence(), shared_.publication.last_sequence());
   const std::uint64_t first = std::max<std::uint64_t>(wish.from_sequence(), 1);
-  if (first > last) return;
+  if (first > last) return SayNothingToRefill(wish);
   if (replay_.refills.size() >= kMaxRefills) {
-    return End("this client asks for missing ticks faster than it reads them");
+    return End("this client asks for missing ticks faster than it reads them: " +
+               std::to_string(kMaxRefills) +
+               " Refills wait; send the next one after the ticks of "
+               "an earlier one");
   }
   replay_.refills.push_back({first, last});
   JoinReplays();
+}
+
+void Session::SayNothingToRefill(const v1::Refill& wish) {
+  const std::string from = std::to_string(wish.from_sequence());
+  Notify(v1::Notice::KIND_NOTHING_TO_REFILL,
+         wish.from_sequence() > wish.to_sequence()
+             ? "Refill: from_sequence " + from + " is above to_sequence " +
+                   std::to_string(wish.to_sequence())
+             : "Refill: tick " + from + " is not published yet; the newest is " +
+                   std::to_string(shared_.publication.last_sequence()),
+         wish.from_sequence());
 }
 
 void Session::Offer(const SharedTick& tick) {

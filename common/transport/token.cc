@@ -1,17 +1,19 @@
 #include "common/transport/token.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <utility>
+
+#include "common/config/regular_file.h"
 
 namespace footing::transport {
 namespace {
 
 constexpr std::size_t kShortest = 16, kLongest = 256;
+constexpr std::size_t kMostBytes = 4096;  // Only the first line counts.
 constexpr double kTriesPerS = 0.2, kTries = 5;
 
 bool IsPlain(const std::string& token) {
@@ -21,27 +23,27 @@ bool IsPlain(const std::string& token) {
   return token.size() >= kShortest && token.size() <= kLongest;
 }
 
+/// What to do about a file that cannot be opened.
+std::string Remedy(const std::string& path) {
+  if (access(path.c_str(), R_OK) == 0) return "";
+  if (errno == ENOENT) {
+    return "; make one on the server (openssl rand -hex 16 > FILE; chmod 600 FILE), and copy it to "
+           "clients on other machines";
+  }
+  return errno == EACCES ? "; it must belong to the user who runs this program" : "";
+}
+
 }  // namespace
 
 Result<std::string> ReadTokenFile(const std::string& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    const std::string remedy =
-        errno == ENOENT ? "; make one on the server (openssl rand -hex 16 > FILE; chmod 600 FILE), "
-                          "and copy it to clients on other machines"
-                        : "";
-    return Failure("token file " + path + ": " + std::strerror(errno) + remedy);
-  }
-  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+  const auto file = config::RegularFile::Open(path);
+  if (!file) return Failure("token file " + path + ": " + file.error().message + Remedy(path));
+  if (file->Allows(S_IRWXG | S_IRWXO)) {
     return UsageError("token file " + path + " may be read by others; chmod 600 " + path);
   }
-  std::ifstream file(path);
-  if (!file) {
-    return Failure("token file " + path + ": " + std::strerror(errno) +
-                   "; it must belong to the user who runs this program");
-  }
-  std::string token;
-  std::getline(file, token);
+  const auto text = file->Read(kMostBytes);
+  if (!text) return Failure("token file " + path + ": " + text.error().message);
+  const std::string token = text->substr(0, text->find('\n'));
   if (!IsPlain(token)) {
     return InvalidData("token file " + path +
                        ": its first line must be 16 to 256 printable characters without blanks; "

@@ -65,6 +65,8 @@ def wrong_words(stage):
     expect(stage, USAGE, "connects to no server", "footing-ctl", "config", "show", "--connect", stage.sensor)
     expect(stage, USAGE, "no_such_key", "footing-ctl", "config", "show", "--config", stage.folder / "no_such_key.json")
     expect(stage, USAGE, "connects to no server", "footing-ctl", "trust", "--connect", "tls:127.0.0.1:1")
+    expect(stage, USAGE, "is named twice", "footing-log", "record", "--out", stage.folder / "twice.mcap", "--connect",
+           stage.sensor, "--connect", stage.sensor)
     expect(stage, USAGE, "takes two names", "footing-game", "--players", "Ann", "--seconds", 1)
     expect(stage, USAGE, "1 to 24 bytes", "footing-game", "--players", "Ann", "", "--seconds", 1)
     expect(stage, USAGE, "must be 127.0.0.1:PORT", "footing-skeleton", "--web", "0.0.0.0:7180", "--no-publish")

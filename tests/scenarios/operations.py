@@ -5,6 +5,7 @@ Usage: operations.py BINARY_FOLDER
 """
 import http.client
 import json
+import os
 import re
 import signal
 import socket
@@ -119,7 +120,13 @@ def check_reload(stage, config):
     reload({"stale_after_s": 2.5, "max_sessions": 3, "max_sessions_per_user": 3, "tick_rate_hz": 50},
            "takes effect after a restart: tick_rate_hz 100.0 -> 50.0")
     assert re.search(r"config reloaded: stale_after_s 0.5 -> 2.5, max_sessions 256 -> 3", log_of(stage, "footingd"))
-    reload({"stale_after_s": 99}, "config not reloaded: the one in force stays")
+    reload({"stale_after_s": 99}, "config not reloaded: the one in force stays: config: stale_after_s = 99")
+    config.unlink()
+    os.mkfifo(config)  # Nobody writes to it: the daemon must not wait.
+    daemon.send_signal(signal.SIGHUP)
+    stage.wait_for(lambda: "it is a pipe, not a regular file" in log_of(stage, "footingd"), "the pipe in the log")
+    config.unlink()
+    assert "error:" not in log_of(stage, "footingd"), "each in one line of the log"
     reload({"stale_after_s": 2.5, "max_sessions": 3, "max_sessions_per_user": 3}, "nothing has changed")
     stage.processes["footing-sim"].send_signal(signal.SIGHUP)
     stage.wait_for(lambda: "nothing has changed" in log_of(stage, "footing-sim"), "footing-sim to reload")
@@ -169,6 +176,7 @@ def check_stop(stage):
     assert stage.stop("footingd") == 0, "an orderly end"
     took_s = time.monotonic() - began_s
     assert took_s < MOST_STOP_S, took_s
+    assert "footingd info: stopped by SIGTERM" in log_of(stage, "footingd"), log_of(stage, "footingd")
     for client in ("footing-log", "footing-sim", "footing-ctl"):
         stage.wait_for(lambda: "footingd is being stopped" in log_of(stage, client), f"the reason in {client}")
     stage.stop("footing-ctl", signal.SIGINT)

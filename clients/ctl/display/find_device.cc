@@ -50,7 +50,7 @@ Result<DeviceStatus> FindDevice(const std::vector<DeviceStatus>& devices, const 
 }
 
 Result<std::pair<std::string, stream::DeviceRole>> ParseRigRole(const std::string& text) {
-  const std::size_t slash = text.find('/');
+  const std::size_t slash = text.rfind('/');  // A rig's name may have one.
   const std::string rig = slash == std::string::npos ? "" : text.substr(0, slash);
   const std::string name = slash == std::string::npos ? text : text.substr(slash + 1);
   const stream::DeviceRole role = stream::RoleNamed(name);

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "clients/ctl/doctor/checks.h"
+#include "common/text/joined.h"
 
 namespace footing::ctl::doctor {
 namespace {
@@ -57,18 +58,21 @@ std::vector<Symptom> NotRunning(const Facts& facts) {
 
 std::vector<Symptom> SecondDaemon(const Facts& facts) {
   if (facts.daemons.size() < 2) return {};
-  std::string numbers, kill;
+  std::vector<std::string> owners, numbers;
   bool foreign = false;
   for (const auto& [number, user] : facts.daemons) {
-    numbers += (numbers.empty() ? "" : ", ") + std::to_string(number) + " of " + user.name;
-    if (number == facts.daemons.begin()->first) continue;
-    kill += " " + std::to_string(number);
+    owners.push_back(std::to_string(number) + " of " + user.name);
+    numbers.push_back(std::to_string(number));
     foreign = foreign || user.uid != facts.user.uid;
   }
-  return {{Severity::kError,
-           std::to_string(facts.daemons.size()) +
-               " footingd run; both write to the same devices and undo each other's settings",
-           "processes " + numbers, std::string(foreign ? "sudo " : "") + "kill" + kill}};
+  // Without a device there is nothing to fight over yet.
+  const bool fight = !facts.hid.empty();
+  return {{fight ? Severity::kError : Severity::kWarning,
+           std::to_string(facts.daemons.size()) + " footingd run; they " + (fight ? "" : "would ") +
+               "write to the same devices and undo each other's settings",
+           "processes " + text::Joined(owners),
+           std::string(foreign ? "sudo " : "") + "kill " + text::Joined(numbers, " ") +
+               ", without the number of the one to keep"}};
 }
 
 std::vector<Symptom> OtherVersion(const Facts& facts) {

@@ -20,6 +20,13 @@ std::string WaitsFor(const Frame& frame, const Hand& hand) {
   return "";
 }
 
+/// For a round that goes on.
+std::string SilenceOf(const Frame& frame, const Hand& hand) {
+  std::string note = hand.known ? "" : "the builder's Wiimote is silent: level ground";
+  if (frame.commanded && !frame.runner_silent) return note;
+  return note + (note.empty() ? "" : "; ") + "the runner's controllers are silent";
+}
+
 }  // namespace
 
 Director::Director(GameOptions options) : options_(std::move(options)), builder_(options_.pits) {
@@ -96,7 +103,7 @@ void Director::Play(const Frame& frame, const Collector& seen, const Hand& hand,
     }
     return;
   }
-  game_.note = hand.known ? "" : "the builder's Wiimote is silent: level ground";
+  game_.note = SilenceOf(frame, hand);
   orders.append = builder_.Advance({frame.time_s, frame.trial.progress.distance_m,
                                     std::max(0.0, frame.commanded_speed_mps), seen.track()},
                                    hand);

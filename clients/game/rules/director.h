@@ -25,7 +25,8 @@ struct GameOptions {
 struct Frame {
   double time_s = 0;  ///< Simulation time.
   double commanded_speed_mps = 0;
-  bool commanded = false;  ///< The runner's features arrive.
+  bool commanded = false;      ///< The runner's features arrive.
+  bool runner_silent = false;  ///< A device that the runner's interface needs sends nothing.
   stream::TrialState trial;
 };
 

@@ -10,7 +10,7 @@ namespace footing::game {
 inline constexpr double kPointsPerM = 1;
 inline constexpr double kPointsPerFailure = -5;
 inline constexpr double kPointsPerDifficulty = 3;
-/// Of the builder, for the first failure on one of his segments: a fall, and leaving the ribbon.
+/// Of the builder, for the first failure on one of their segments: a fall, and leaving the ribbon.
 /// Pits are not part of the paper's game, and easier to lay than to clear.
 inline constexpr double kPointsPerFall = 10;
 inline constexpr double kPointsPerExit = 8;

@@ -53,7 +53,10 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
   }
 
   bool Publish(const std::string& topic, const std::string& payload, bool retain) {
-    if (!up_) return false;
+    if (!up_) {
+      if (was_up_ && !retain) ++dropped_;  // What is retained comes again.
+      return false;
+    }
     const bool sent = in_flight_ < options_.max_in_flight &&
                       mosquitto_publish(client_->mosquitto, nullptr, topic.c_str(),
                                         static_cast<int>(payload.size()), payload.data(), 0,
@@ -148,7 +151,7 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
   void OnConnect(int code) {
     if (code != 0) return OnDown(mosquitto_connack_string(code));
     timer_.cancel();
-    up_ = true;
+    up_ = was_up_ = true;
     backoff_.Reset();
     handlers_.on_up();
   }
@@ -175,6 +178,7 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
   std::uint64_t attempt_ = 0;
   std::unique_ptr<Client> client_;
   bool up_ = false;
+  bool was_up_ = false;
   int in_flight_ = 0;
   std::uint64_t dropped_ = 0;
 };

@@ -43,7 +43,7 @@ class MqttLink {
   bool Publish(const std::string& topic, const std::string& payload, bool retain);
 
   bool up() const;
-  std::uint64_t dropped() const;  ///< Messages that Publish() refused while the link was up.
+  std::uint64_t dropped() const;  ///< Messages that Publish() refused since the link was up first.
 
  private:
   class Implementation;

@@ -64,7 +64,10 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
   }
 
   bool Publish(const std::string& subject, std::string_view payload, const std::string& reply) {
-    if (!up()) return false;
+    if (!up()) {
+      if (was_up_) ++dropped_;
+      return false;
+    }
     const bool too_long = connection_->max_payload > 0 && payload.size() > connection_->max_payload;
     if (too_long || connection_->queued.size() + payload.size() > options_.max_queued_bytes) {
       ++dropped_;
@@ -143,7 +146,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
 
   void OnPong() {
     if (!connection_ || connection_->up) return;
-    connection_->up = true;
+    connection_->up = was_up_ = true;
     backoff_.Reset();
     handlers_.on_up();
   }
@@ -217,6 +220,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
   std::vector<std::string> subjects_;  ///< The subscription's number is its place, from 1.
   std::shared_ptr<Connection> connection_;
   std::uint64_t dropped_ = 0;
+  bool was_up_ = false;
 };
 
 NatsLink::NatsLink(boost::asio::io_context& io, NatsOptions options, NatsLinkHandlers handlers)

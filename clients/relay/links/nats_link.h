@@ -50,7 +50,7 @@ class NatsLink {
   bool Publish(const std::string& subject, std::string_view payload, const std::string& reply = "");
 
   bool up() const;
-  std::uint64_t dropped() const;  ///< Messages that Publish() refused while the link was up.
+  std::uint64_t dropped() const;  ///< Messages that Publish() refused since the link was up first.
 
  private:
   class Implementation;

@@ -36,7 +36,8 @@ std::string MetricsText(const PublisherReport& report, const std::string& versio
   if (report.mqtt_up) to.Sample(Number(*report.mqtt_up), Braced({{"broker", "mqtt"}}));
   to.Counter("footing_relay_published_total", "Messages published.");
   to.Sample(report.published);
-  to.Counter("footing_relay_dropped_total", "Messages that a broker did not take in time.");
+  to.Counter("footing_relay_dropped_total",
+             "Messages that a broker did not take, since it was gone or slow.");
   to.Sample(report.dropped);
   monitoring::WriteProcess(monitoring::UsageOfThisProcess(), to);
   return to.Take();

@@ -35,7 +35,7 @@ struct PublisherReport {
   std::uint64_t ticks = 0;
   std::uint64_t missing = 0;    ///< Ticks that never came from the servers.
   std::uint64_t published = 0;  ///< Messages, answers not counted.
-  std::uint64_t dropped = 0;    ///< Messages for which a broker was too slow, or too small.
+  std::uint64_t dropped = 0;    ///< Messages that a broker did not take: gone, slow, or too small.
   std::vector<SourceState> sources;
   std::optional<bool> nats_up, mqtt_up;  ///< Of the brokers that are published in.
 };

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
+#include "common/text/lines.h"
 #include "common/units/time.h"
 
 namespace footing::skeleton {
@@ -71,16 +73,43 @@ void Decoder::TakeMessage(const osc::Packet& packet, const osc::Message& message
   } else if (message.address == "/joint" && message.types == "sff") {
     Unknown(message, "kitchen mode has two dimensions only; start OSCeleton without -k");
   } else if (message.address.starts_with("/VMC/Ext/")) {
-    if (const auto skeleton = vmc_.Take(message.address, packet.Of(message), message.types)) {
-      complete.push_back({*skeleton, Dialect::kVmc, now_ns});
-      if (options_.mirrored) complete.back().skeleton = MirrorImage(*skeleton);
-      counts_.joints += skeleton->present();
-    }
+    TakeVmc(packet, message, now_ns, complete);
   } else if (message.address.starts_with("/footing/")) {
     Unknown(message, "Footing's own are /footing/skeleton ,hi or ,ii and /footing/joint ,sffff");
   } else if (!IsKnown(message.address)) {
     Unknown(message, "neither a joint of OSCeleton, VMC nor Footing");
   }
+}
+
+void Decoder::TakeVmc(const osc::Packet& packet, const osc::Message& message, std::int64_t now_ns,
+                      std::vector<Decoded>& complete) {
+  const VmcStep step = vmc_.Take(message.address, packet.Of(message), message.types);
+  switch (step.taken) {
+    case VmcStep::Taken::kTaken:
+      break;
+    case VmcStep::Taken::kTypes:
+      Unknown(message, "a bone has the types ,sfffffff: its name, position and quaternion");
+      break;
+    case VmcStep::Taken::kName:
+      ++counts_.unknown;
+      Report(Problem::kBone, "VMC: " + text::Quoted(step.bone) +
+                                 " is not a bone of Unity's humanoid; names are case-sensitive");
+      break;
+    case VmcStep::Taken::kNumbers:
+      ++counts_.rejected;
+      Report(
+          Problem::kBoneNumbers,
+          "VMC: the numbers of " + text::Quoted(step.bone) +
+              " make no sense: not finite, 10 km and more, or a quaternion whose length is not 1");
+      break;
+  }
+  if (!reported_[static_cast<std::size_t>(Problem::kNoSkeleton)]) {
+    if (std::string reason = vmc_.NoSkeleton(); !reason.empty())
+      Report(Problem::kNoSkeleton, std::move(reason));
+  }
+  if (!step.skeleton) return;
+  complete.push_back({WithSides(options_, *step.skeleton), Dialect::kVmc, now_ns});
+  counts_.joints += step.skeleton->present();
 }
 
 /// False when the address of kQuartz cannot be understood.
@@ -160,7 +189,7 @@ void Decoder::TakeJoint(Dialect dialect, const Numbers& joint, std::int64_t now_
   }
   if (taken == JointSet::Taken::kUnknown) {
     ++counts_.unknown;
-    last_problem_ = "unknown joint " + std::string(joint.name.substr(0, 32));
+    Report(Problem::kJoint, "unknown joint " + std::string(joint.name.substr(0, 32)));
     return;
   }
   ++counts_.joints;
@@ -190,8 +219,7 @@ Decoder::Frame* Decoder::FrameOf(Dialect dialect, std::int32_t user, std::int64_
 
 void Decoder::Complete(Frame& frame, std::vector<Decoded>& complete) {
   Decoded& one = complete.emplace_back();
-  one.skeleton = frame.joints.Finish();
-  if (options_.mirrored) one.skeleton = MirrorImage(one.skeleton);
+  one.skeleton = WithSides(options_, frame.joints.Finish());
   one.skeleton.user = frame.user;
   one.skeleton.sequence = frame.sequence;
   one.skeleton.sent_ns = frame.sent_ns;
@@ -207,8 +235,17 @@ void Decoder::Complete(Frame& frame, std::vector<Decoded>& complete) {
 
 void Decoder::Unknown(const osc::Message& message, const std::string& why) {
   ++counts_.unknown;
-  last_problem_ = "message " + std::string(message.address) + " ," + std::string(message.types) +
-                  " is not understood: " + why;
+  Report(Problem::kMessage, "message " + std::string(message.address) + " ," +
+                                std::string(message.types) + " is not understood: " + why);
 }
+
+void Decoder::Report(Problem problem, std::string text) {
+  last_problem_ = std::move(text);
+  bool& reported = reported_[static_cast<std::size_t>(problem)];
+  if (!reported) problems_.push_back(last_problem_);
+  reported = true;
+}
+
+std::vector<std::string> Decoder::TakeProblems() { return std::exchange(problems_, {}); }
 
 }  // namespace footing::skeleton

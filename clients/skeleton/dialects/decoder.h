@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,9 +24,10 @@ struct Decoded {
 struct DecoderCounts {
   std::uint64_t messages = 0;
   std::uint64_t joints = 0;
-  std::uint64_t unknown = 0;   ///< Messages of no dialect, and unknown joints.
-  std::uint64_t rejected = 0;  ///< Joints with numbers that make no sense, too many persons.
-  std::uint64_t late = 0;      ///< Joints of a frame that was complete already.
+  std::uint64_t unknown = 0;  ///< Messages of no dialect, and unknown joints and bones.
+  std::uint64_t rejected =
+      0;                   ///< Joints and bones with numbers that make no sense, too many persons.
+  std::uint64_t late = 0;  ///< Joints of a frame that was complete already.
 };
 
 /// Packets to skeletons. The dialects differ by address and types, so several may arrive at once.
@@ -47,8 +49,14 @@ class Decoder {
   const DecoderCounts& counts() const { return counts_; }
   /// What a message of no dialect was, the last time; for a person.
   const std::string& last_problem() const { return last_problem_; }
+  /// The first problem of each kind since the last call.
+  std::vector<std::string> TakeProblems();
+  /// Why the bones of a VMC sender make no skeleton now; empty while they do.
+  std::string NoSkeleton() const { return vmc_.NoSkeleton(); }
 
  private:
+  enum class Problem : std::uint8_t { kMessage, kJoint, kBone, kBoneNumbers, kNoSkeleton };
+
   /// A person's frame while it comes in.
   struct Frame {
     Dialect dialect = Dialect::kFooting;
@@ -74,8 +82,11 @@ class Decoder {
   void TakeJoint(Dialect dialect, const Numbers& joint, std::int64_t now_ns,
                  std::vector<Decoded>& complete);
   Frame* FrameOf(Dialect dialect, std::int32_t user, std::int64_t now_ns);
+  void TakeVmc(const osc::Packet& packet, const osc::Message& message, std::int64_t now_ns,
+               std::vector<Decoded>& complete);
   void Complete(Frame& frame, std::vector<Decoded>& complete);
   void Unknown(const osc::Message& message, const std::string& why);
+  void Report(Problem problem, std::string text);
 
   DialectOptions options_;
   VmcPose vmc_;
@@ -83,6 +94,8 @@ class Decoder {
   std::int32_t footing_user_ = 0;  // Of the packet's last head.
   DecoderCounts counts_;
   std::string last_problem_;
+  std::array<bool, 5> reported_{};  // By Problem.
+  std::vector<std::string> problems_;
 };
 
 }  // namespace footing::skeleton

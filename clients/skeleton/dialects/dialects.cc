@@ -88,6 +88,11 @@ std::optional<Dialect> DialectOf(std::string_view name) {
 std::string_view NameOf(Units units) { return kUnitNames[static_cast<std::size_t>(units)]; }
 std::optional<Units> UnitsOf(std::string_view name) { return Find<Units>(kUnitNames, name); }
 
+Skeleton WithSides(const DialectOptions& options, const Skeleton& skeleton) {
+  const Skeleton sides = options.swap_sides ? SwappedSides(skeleton) : skeleton;
+  return options.mirrored ? MirrorImage(sides) : sides;
+}
+
 Eigen::Vector3d ToCamera(Dialect dialect, const DialectOptions& options,
                          const Eigen::Vector3d& numbers) {
   const Linear linear = ToMetres(UnitsOf(dialect, options));

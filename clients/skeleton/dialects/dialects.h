@@ -45,8 +45,13 @@ struct DialectOptions {
   Eigen::Vector3d factor = Eigen::Vector3d::Ones();  ///< Not 0.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   bool flip_y = false;    ///< The sender's y points the other way than its dialect's.
-  bool mirrored = false;  ///< The sender sees a mirror image: swap left and right.
+  bool mirrored = false;  ///< The sender shows a mirror image: negate x, swap left and right.
+  /// The sender swaps the names of left and right. With `mirrored` only x is negated.
+  bool swap_sides = false;
 };
+
+/// A sender's skeleton with its sides put right, and back.
+Skeleton WithSides(const DialectOptions& options, const Skeleton& skeleton);
 
 /// A dialect's numbers to metres in K, and back.
 Eigen::Vector3d ToCamera(Dialect dialect, const DialectOptions& options,

@@ -65,7 +65,7 @@ std::string JointMessage(Dialect dialect, const Skeleton& skeleton, std::size_t 
 std::vector<std::string> Encode(Dialect dialect, const DialectOptions& options,
                                 const Skeleton& skeleton) {
   if (dialect == Dialect::kVmc) return {};
-  const Skeleton sent = options.mirrored ? MirrorImage(skeleton) : skeleton;
+  const Skeleton sent = WithSides(options, skeleton);
   std::vector<std::string> messages;
   if (dialect == Dialect::kFooting) {
     const Argument head[] = {skeleton.sequence.value_or(0), skeleton.user};

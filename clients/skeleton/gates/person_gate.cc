@@ -10,15 +10,17 @@
 namespace footing::skeleton {
 namespace {
 
-// A limb's segment of an adult or a child: 0.2 to 0.5 m, with the errors of a camera.
-constexpr double kShortestM = 0.15;
+// A limb's segment of an adult or a child: 0.2 to 0.5 m, with the errors of a camera. The mean of
+// all limbs is 0.21 of the height, so somebody of 0.86 m has the least.
+constexpr double kShortestM = 0.18;
 constexpr double kLongestM = 0.65;
 constexpr double kMemoryFrames = 90;  // Of the running means: 3 s at 30 Hz.
 constexpr double kLeastFrames = 30;   // Before a mean says anything.
 // Hands and bent knees are in front of the shoulders by 0.10 to 0.15 m on average (four recorded
 // people); less than this says nothing.
 constexpr double kFrontM = 0.04;
-constexpr double kBentM = 0.08;  // A knee out of the line from hip to foot: a leg that is bent.
+constexpr double kUpright = 0.5;  // The upward part of a trunk that is not lying.
+constexpr double kBentM = 0.08;   // A knee out of the line from hip to foot: a leg that is bent.
 // OSCeleton's normalised coordinates, taken for metres, are upside down and half as long.
 constexpr double kNormalisedM = 0.26;
 
@@ -32,7 +34,7 @@ Fault ScaleFault(double limb_m) {
   if (limb_m >= 1000 * kShortestM && limb_m <= 1000 * kLongestM) return Fault::kMillimetres;
   if (limb_m >= 100 * kShortestM && limb_m <= 100 * kLongestM) return Fault::kCentimetres;
   // 0.2 m and more over the 1.28 to 2.56 m of one unit.
-  if (limb_m >= kShortestM / 2.56 && limb_m < kShortestM) return Fault::kNormalised;
+  if (limb_m >= kShortestM / 2.56 && limb_m < kShortestM) return Fault::kShort;
   return Fault::kScale;
 }
 
@@ -55,8 +57,13 @@ std::optional<double> UpwardPart(const Skeleton& skeleton) {
   return trunk.norm() > 0 ? std::optional(trunk.y() / trunk.norm()) : std::nullopt;
 }
 
-/// How far hands and bent knees lie in front of the body if left is left, on average, metres.
-std::optional<double> Front(const Skeleton& skeleton) {
+/// Where hands and bent knees are if left is left.
+struct Front {
+  double ahead_m = 0;  ///< In front of the body, on average.
+  double away = 0;     ///< The part of "in front" that points away from the camera, -1 to 1.
+};
+
+std::optional<Front> FrontOf(const Skeleton& skeleton) {
   if (!Both(skeleton, Joint::kLeftShoulder, Joint::kRightShoulder)) return std::nullopt;
   const Eigen::Vector3d left =
       skeleton[Joint::kLeftShoulder].p_K_m - skeleton[Joint::kRightShoulder].p_K_m;
@@ -78,7 +85,8 @@ std::optional<double> Front(const Skeleton& skeleton) {
     const Eigen::Vector3d bend = skeleton[knee].p_K_m - Middle(skeleton, hip, foot);
     if (bend.norm() > kBentM) add(bend);
   }
-  return count > 0 ? std::optional(sum_m / count) : std::nullopt;
+  if (count == 0) return std::nullopt;
+  return Front{sum_m / count, ahead.normalized().z()};
 }
 
 }  // namespace
@@ -96,15 +104,23 @@ std::string Advice(Fault fault) {
     case Fault::kNormalised:
       return "the bones are too short: the sender uses normalised image coordinates; start with "
              "--units normalised, or OSCeleton with -r";
+    case Fault::kShort:
+      return "the bones are half as long as a person's or less: the sender's scale is wrong; start "
+             "with --factor (0.5,0.5,0.5 for a skeleton of half size)";
     case Fault::kScale:
       return "the bones have no length of a person in any known unit; see --units and the sender's "
              "factors (-mx, -my, -mz of OSCeleton: --factor)";
     case Fault::kUpsideDown:
       return "the head is below the hips: the sender's y points down, or the camera is upside "
              "down; start with --flip-y, or turn the camera";
-    case Fault::kMirrored:
-      return "left and right are swapped: the sender shows a mirror image, or the person turns the "
-             "back to the camera; turn mirroring off there, or start with --mirrored";
+    case Fault::kSwapped:
+      return "left and right are swapped: hands and bent knees are behind the body; start with "
+             "--swap-sides (without it if it is given), and with --mirrored too if raising the "
+             "left "
+             "hand then raises the right";
+    case Fault::kTurned:
+      return "the person turns the back to the camera, which takes it for the front: face the "
+             "camera; of a sender without a camera left and right are swapped: --swap-sides";
   }
   return "";
 }
@@ -141,13 +157,19 @@ Fault PersonGate::FaultOf(const Skeleton& skeleton) {
   weight_ = std::min(weight_ + 1, kMemoryFrames);
   if (const auto up = UpwardPart(skeleton)) up_ += (*up - up_) / weight_;
   if (const auto limb_m = lengths_.Limb()) {
-    if (const Fault fault = ScaleFault(*limb_m); fault != Fault::kNone) return fault;
-    if (const auto front_m = Front(skeleton)) front_m_ += (*front_m - front_m_) / weight_;
+    const Fault fault = ScaleFault(*limb_m);
+    if (fault == Fault::kShort && up_ < -kUpright) return Fault::kNormalised;
+    if (fault != Fault::kNone) return fault;
+    if (const auto front = FrontOf(skeleton)) {
+      front_m_ += (front->ahead_m - front_m_) / weight_;
+      away_ += (front->away - away_) / weight_;
+    }
   }
   if (weight_ < kLeastFrames) return Fault::kNone;
-  if (up_ < -0.5)
+  if (up_ < -kUpright)
     return lengths_.Limb().value_or(1) < kNormalisedM ? Fault::kNormalised : Fault::kUpsideDown;
-  return front_m_ < -kFrontM ? Fault::kMirrored : Fault::kNone;
+  if (front_m_ >= -kFrontM) return Fault::kNone;
+  return away_ > 0 ? Fault::kSwapped : Fault::kTurned;
 }
 
 void PersonGate::DropBones(Gated& gated) const {

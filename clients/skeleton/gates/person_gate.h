@@ -15,9 +15,11 @@ enum class Fault : std::uint8_t {
   kMillimetres,  ///< The bones are a thousand times too long.
   kCentimetres,
   kNormalised,  ///< They are as short as in normalised image coordinates.
+  kShort,       ///< They are half as long as a person's, and the head is above.
   kScale,       ///< They are too long or too short, and no unit explains it.
   kUpsideDown,  ///< The head is below the hips.
-  kMirrored,    ///< Knees and hands lie on the far side: left and right are swapped.
+  kSwapped,     ///< Knees and hands are behind the body, where the camera is: sides are swapped.
+  kTurned,      ///< They are behind it and away from the camera, which sees the back as a front.
 };
 
 /// One line for a person: what is seen and what to do. Empty for kNone.
@@ -37,7 +39,7 @@ struct Gated {
 /// What of a person's skeleton can be true. Joints are dropped when a bone is more than a quarter
 /// off the person's own running median (2.5 to 8 % of Kinect frames have such a bone), or when they
 /// moved faster than 6 m/s, unless they stay there. Whole skeletons are dropped while their scale
-/// or their up is wrong, or while left and right are swapped. A plain value.
+/// or their up is wrong, or while left and right do not fit knees and hands. A plain value.
 class PersonGate {
  public:
   static constexpr double kBoneTolerance = 0.25;
@@ -66,7 +68,8 @@ class PersonGate {
   std::array<Last, kJoints> last_;
   double up_ = 1;       // Running mean of the trunk's upward part, -1 to 1.
   double front_m_ = 0;  // Running mean of how far knees and hands lie in front.
-  double weight_ = 0;   // Of both means, in frames.
+  double away_ = 0;     // Running mean of the part of "ahead" that points away from the camera.
+  double weight_ = 0;   // Of these means, in frames.
 };
 
 }  // namespace footing::skeleton

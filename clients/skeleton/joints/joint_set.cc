@@ -110,7 +110,19 @@ JointReading Between(std::initializer_list<JointReading> readings) {
   return mean;
 }
 
+void Fill(Skeleton& skeleton, Joint joint, const JointReading& reading) {
+  if (!skeleton[joint].present()) skeleton[joint] = reading;
+}
+
 }  // namespace
+
+void FillTrunk(Skeleton& skeleton) {
+  const JointReading &left = skeleton[Joint::kLeftShoulder],
+                     &right = skeleton[Joint::kRightShoulder];
+  Fill(skeleton, Joint::kNeck, Between({left, right}));
+  Fill(skeleton, Joint::kTorso,
+       Between({left, right, skeleton[Joint::kLeftHip], skeleton[Joint::kRightHip]}));
+}
 
 JointSet::Taken JointSet::Add(std::string_view name, const JointReading& reading) {
   const auto plain = ToPlain(name);
@@ -146,16 +158,9 @@ JointSet::Taken JointSet::Add(std::string_view name, const JointReading& reading
 Skeleton JointSet::Finish() const {
   Skeleton skeleton;
   for (std::size_t i = 0; i < kJoints; ++i) skeleton.joints[i] = joints_[i].reading;
-  const auto fill = [&skeleton](Joint joint, const JointReading& reading) {
-    if (!skeleton[joint].present()) skeleton[joint] = reading;
-  };
-  const JointReading &left = skeleton[Joint::kLeftShoulder],
-                     &right = skeleton[Joint::kRightShoulder];
-  fill(Joint::kNeck, Between({left, right}));
-  fill(Joint::kTorso,
-       Between({left, right, skeleton[Joint::kLeftHip], skeleton[Joint::kRightHip]}));
-  fill(Joint::kHead, Between({face_[0], face_[1]}));
-  fill(Joint::kHead, face_[2]);
+  FillTrunk(skeleton);
+  Fill(skeleton, Joint::kHead, Between({face_[0], face_[1]}));
+  Fill(skeleton, Joint::kHead, face_[2]);
   return skeleton;
 }
 

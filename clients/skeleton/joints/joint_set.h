@@ -8,6 +8,9 @@
 
 namespace footing::skeleton {
 
+/// Computes an absent neck (between the shoulders) and torso (between shoulders and hips).
+void FillTrunk(Skeleton& skeleton);
+
 /// The 15 joints out of any set of named ones: OSCeleton ("l_hand"), Kinect ("HandLeft"), Azure
 /// Kinect ("HAND_LEFT"), MediaPipe ("left_wrist"), OpenNI ("LEFT_HAND"). Case, '_', '-' and spaces
 /// do not matter. Of two names for one joint the better one counts whatever their order: an ankle

@@ -17,12 +17,17 @@ std::size_t Skeleton::present() const {
       std::count_if(joints.begin(), joints.end(), [](const auto& one) { return one.present(); }));
 }
 
+Skeleton SwappedSides(const Skeleton& skeleton) {
+  Skeleton swapped = skeleton;
+  for (std::size_t i = 0; i < kJoints; ++i)
+    swapped.joints[i] = skeleton[Mirrored(static_cast<Joint>(i))];
+  return swapped;
+}
+
 Skeleton MirrorImage(const Skeleton& skeleton) {
-  Skeleton image = skeleton;
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    image.joints[i] = skeleton[Mirrored(static_cast<Joint>(i))];
-    image.joints[i].p_K_m.x() *= -1;
-  }
+  Skeleton image = SwappedSides(skeleton);
+  for (JointReading& joint : image.joints) joint.p_K_m.x() *= -1;
+  if (image.toes_K_m) image.toes_K_m->x() *= -1;
   return image;
 }
 

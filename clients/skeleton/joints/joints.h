@@ -55,12 +55,16 @@ struct Skeleton {
   std::optional<std::int64_t> sequence;
   std::optional<std::int64_t> sent_ns;  ///< The sender's own time of the exposure.
   bool unix_time = false;               ///< sent_ns counts from 1970, not from the sender's start.
+  /// From the ankles to the toes, both feet added up, where the sender has toes.
+  std::optional<Eigen::Vector3d> toes_K_m;
 
   JointReading& operator[](Joint joint) { return joints[Index(joint)]; }
   const JointReading& operator[](Joint joint) const { return joints[Index(joint)]; }
   std::size_t present() const;
 };
 
+/// Left called right, and right left.
+Skeleton SwappedSides(const Skeleton& skeleton);
 /// The skeleton in a mirror: x negated, left and right swapped.
 Skeleton MirrorImage(const Skeleton& skeleton);
 

@@ -87,6 +87,7 @@ class Receiver {
     cost.seconds = NanosecondsToSeconds(ended_ns_ - began_ns_);
     cost.cpu_s = NanosecondsToSeconds(ended_cpu_ns_ - began_cpu_ns_);
     cost.dropped_packets = dropped_;
+    cost.published = published_skeletons_;
     cost.hand_frames = link_ ? link_->sent() : 0;
     cost.dropped_hand_frames = link_ ? link_->dropped() : 0;
     auto json = ToJson(tracker_, cost);
@@ -163,6 +164,7 @@ class Receiver {
   void Publish(std::int64_t now_ns) {
     for (const Observation& observation : observations_) {
       if (!link_) break;
+      ++published_skeletons_;
       link_->Send(ToHandFrame(observation, now_ns));
     }
     observations_.clear();
@@ -196,7 +198,7 @@ class Receiver {
   transport::TokenBucket bucket_{options_.most_packets_per_s,
                                  std::max(1.0, 0.1 * options_.most_packets_per_s)};
   std::int64_t dropped_line_ns_ = 0;
-  std::uint64_t dropped_ = 0;
+  std::uint64_t dropped_ = 0, published_skeletons_ = 0;
   Result<void> published_;
   std::int64_t began_ns_ = 0, ended_ns_ = 0, began_cpu_ns_ = 0, ended_cpu_ns_ = 0;
 };

@@ -23,9 +23,10 @@ ordered_json ToJson(const Tracker& tracker, const Cost& cost) {
                        {"late_joints", decoder.late},
                        {"skeletons", counts.skeletons},
                        {"overtaken_skeletons", counts.overtaken},
-                       {"published", counts.published},
+                       {"published", cost.published},
                        {"hand_frames", cost.hand_frames},
                        {"dropped_hand_frames", cost.dropped_hand_frames},
+                       {"advice", tracker.Advice()},
                        {"people", ordered_json::array()}};
   for (const auto& [user, person] : counts.people) {
     const auto of = [&verdicts = person.verdicts](Verdict verdict) {
@@ -40,7 +41,7 @@ ordered_json ToJson(const Tracker& tracker, const Cost& cost) {
                               {"bone_rejected", of(Verdict::kBone)},
                               {"speed_rejected", of(Verdict::kSpeed)},
                               {"fault_rejected", of(Verdict::kFault)},
-                              {"advice", Advice(person.fault)}});
+                              {"advice", tracker.AdviceOf(user)}});
   }
   if (const auto& camera = tracker.camera()) {
     json["camera"] = {{"x_m", camera->p_W_m.x()},
@@ -64,6 +65,7 @@ ordered_json ToJson(const WebCounts& web) {
 std::string ToText(const ordered_json& json) {
   std::string text = json["packets"].dump() + " packets, " + json["skeletons"].dump() +
                      " skeletons, " + json["hand_frames"].dump() + " frames of hands sent\n";
+  if (const auto advice = json["advice"].get<std::string>(); !advice.empty()) text += advice + "\n";
   for (const auto& person : json["people"]) {
     text += "person " + person["user"].dump() + " (" + person["dialect"].get<std::string>() +
             "): " + person["skeletons"].dump() + " skeletons, " + person["joints"].dump() +

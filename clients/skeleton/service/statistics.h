@@ -13,6 +13,7 @@ struct Cost {
   double seconds = 0;
   double cpu_s = 0;
   std::uint64_t dropped_packets = 0;
+  std::uint64_t published = 0;  ///< Skeletons, to footingd.
   std::uint64_t hand_frames = 0, dropped_hand_frames = 0;
 };
 

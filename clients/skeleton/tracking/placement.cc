@@ -26,6 +26,10 @@ bool IsWhole(const Skeleton& skeleton) {
   return skeleton[Joint::kNeck].present();
 }
 
+/// Of the angle within which a person by whose left and right the camera is behind has swapped
+/// sides. Somebody who stands sideways may be right.
+constexpr double kBehindCosine = 0.5;
+
 std::string Number(double value) { return std::to_string(static_cast<int>(std::lround(value))); }
 
 }  // namespace
@@ -43,13 +47,15 @@ Eigen::Isometry3d ToPose(const CameraPlace& place) {
   return pose;
 }
 
-Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPlace& known) {
+Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPlace& known,
+                                bool by_camera) {
   StandingFit fit{.place = known};
   fit.place.yaw_rad = 0;
   fit.place.p_W_m.setZero();
   // A frame that is level, with the camera's unknown yaw.
   const Eigen::Matrix3d R_LK = ToPose(fit.place).linear();
   Vector3d left = Vector3d::Zero(), trunk = Vector3d::Zero(), feet = Vector3d::Zero();
+  Vector3d toes = Vector3d::Zero();
   std::vector<Vector3d> all;
   for (const Skeleton& frame : frames) {
     if (!IsWhole(frame)) continue;
@@ -57,8 +63,9 @@ Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPl
     trunk += R_LK * (frame[Joint::kNeck].p_K_m - Middle(frame, Joint::kLeftHip));
     all.push_back(R_LK * Middle(frame, Joint::kLeftFoot));
     feet += all.back();
+    toes += R_LK * frame.toes_K_m.value_or(Vector3d::Zero());
   }
-  if (all.size() < kStandingFrames / 2)
+  if (all.empty() || all.size() < frames.size() / 2)
     return Failure("placement: the camera must see shoulders, hips and feet; step back");
   feet /= static_cast<double>(all.size());
   double square_m2 = 0;
@@ -73,6 +80,16 @@ Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPl
   }
   // The yaw that turns left to W's y.
   fit.place.yaw_rad = std::atan2(left.x(), left.y());
+  if (toes.dot(left.cross(Vector3d::UnitZ())) < 0) {
+    return Failure(
+        "placement: the toes point back, so left and right are swapped; start with --swap-sides, "
+        "and with --mirrored too if raising the left hand then raises the right");
+  }
+  if (by_camera && std::cos(fit.place.yaw_rad) > kBehindCosine) {
+    return Failure(
+        "placement: by left and right the person turns the back to the camera: face the camera; if "
+        "you do, left and right are swapped: start with --swap-sides");
+  }
   const Vector3d feet_W = Eigen::AngleAxisd(fit.place.yaw_rad, Vector3d::UnitZ()) * feet;
   fit.place.p_W_m = Vector3d(0, 0, kAnkleHeightM) - feet_W;
   return fit;

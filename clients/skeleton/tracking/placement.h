@@ -27,15 +27,19 @@ struct StandingFit {
   double scatter_m = 0;  ///< Standard deviation of the middle of the feet.
 };
 
-inline constexpr std::size_t kStandingFrames = 60;
-inline constexpr double kMostLeanRad = 0.26;  ///< 15 degrees.
+inline constexpr double kStandingS = 2;
+inline constexpr std::size_t kLeastStandingFrames = 10;  ///< However long they take.
+inline constexpr double kMostLeanRad = 0.26;             ///< 15 degrees.
 inline constexpr double kMostScatterM = 0.03;
 inline constexpr double kAnkleHeightM = 0.08;  ///< Of an ankle's centre above the sole.
 
 /// The place of a camera from frames of a person who stands still on the boards, facing along W's
 /// x: left is where shoulders and hips say, the middle of the ankles is above W's origin. Pitch and
 /// roll are known from `known`. Failure says what to do: too few whole frames, a person who moves,
-/// a trunk that leans by more than 15 degrees.
-Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPlace& known);
+/// a trunk that leans by more than 15 degrees. If left and right are swapped, the camera would be
+/// on the opposite side, so it is a failure, too, that the toes point back, or that the person does
+/// not face a camera where there is one (`by_camera`).
+Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPlace& known,
+                                bool by_camera = true);
 
 }  // namespace footing::skeleton

@@ -9,8 +9,14 @@
 namespace footing::skeleton {
 namespace {
 
-constexpr std::int64_t kAwayNs = 1'000'000'000;  // Then another person may be published.
-constexpr std::size_t kMostPeople = 32;          // Remembered.
+constexpr std::int64_t kAwayNs = 1'000'000'000;    // Then another person may be published.
+constexpr std::size_t kMostPeople = 32;            // Remembered.
+constexpr std::size_t kMostOthers = 8;             // Named.
+constexpr std::int64_t kWantedNs = 2'000'000'000;  // For the wanted person to appear beside others.
+constexpr std::size_t kMostStanding = 2000;        // At 1000 skeletons a second.
+constexpr const char* kNotPlaced =
+    "the camera is not placed yet: stand on the boards, upright, facing the camera, for two "
+    "seconds, or give its position with --camera-m";
 
 }  // namespace
 
@@ -29,10 +35,7 @@ void Tracker::Take(osc::Bytes bytes, std::int64_t now_ns, std::int64_t wall_ns,
     return;
   }
   decoder_.Take(packet_, now_ns, complete_);
-  if (decoder_.last_problem() != last_problem_) {
-    if (last_problem_.empty()) messages_.push_back(decoder_.last_problem());
-    last_problem_ = decoder_.last_problem();
-  }
+  for (std::string& problem : decoder_.TakeProblems()) messages_.push_back(std::move(problem));
   Settle(now_ns, wall_ns, out);
 }
 
@@ -55,7 +58,7 @@ void Tracker::Settle(std::int64_t now_ns, std::int64_t wall_ns, std::vector<Obse
 void Tracker::Take(const Decoded& decoded, std::int64_t now_ns, std::int64_t wall_ns,
                    std::vector<Observation>& out) {
   const std::int32_t user = decoded.skeleton.user;
-  if (options_.user && user != *options_.user) return;
+  if (options_.user && user != *options_.user) return NoteOther(user, now_ns);
   Person& person = PersonOf(user, now_ns);
   const std::int64_t since_ns = now_ns - decoded.arrived_ns;
   const std::int64_t age_ns = person.clock.Age(decoded.skeleton.sent_ns, decoded.skeleton.unix_time,
@@ -77,12 +80,11 @@ void Tracker::Take(const Decoded& decoded, std::int64_t now_ns, std::int64_t wal
   counts.fault = gated.fault;
   Report(user, person, gated.fault);
   if (gated.fault != Fault::kNone || !IsPublished(user, now_ns)) return;
-  if (!camera_) Stand(gated.skeleton);
+  if (!camera_) Stand(decoded, gated.skeleton, exposed_ns);
   if (!camera_) return;
   Observation& observation = out.emplace_back(Observe(gated.skeleton, X_WK_));
   observation.exposed_ns = exposed_ns;
   observation.arrived_ns = decoded.arrived_ns;
-  ++counts_.published;
 }
 
 Tracker::Person& Tracker::PersonOf(std::int32_t user, std::int64_t now_ns) {
@@ -110,13 +112,16 @@ bool Tracker::IsPublished(std::int32_t user, std::int64_t now_ns) {
   return true;
 }
 
-void Tracker::Stand(const Skeleton& skeleton) {
-  standing_.push_back(skeleton);
-  if (standing_.size() < kStandingFrames) return;
-  const auto fit = FitStanding(standing_, options_.camera);
+void Tracker::Stand(const Decoded& decoded, const Skeleton& gated, std::int64_t exposed_ns) {
+  if (standing_.empty()) standing_since_ns_ = exposed_ns;
+  if (standing_.size() < kMostStanding) standing_.push_back(gated);
+  const double seconds = NanosecondsToSeconds(exposed_ns - standing_since_ns_);
+  if (seconds < kStandingS || standing_.size() < kLeastStandingFrames) return;
+  const auto fit = FitStanding(standing_, options_.camera, decoded.dialect != Dialect::kVmc);
   standing_.clear();
   if (!fit) {
-    messages_.push_back(fit.error().message);
+    if (not_placed_ != fit.error().message) messages_.push_back(fit.error().message);
+    not_placed_ = fit.error().message;
     return;
   }
   camera_ = fit->place;
@@ -129,12 +134,40 @@ void Tracker::Stand(const Skeleton& skeleton) {
                       text::Fixed(RadiansToDegrees(fit->lean_rad), 1) + " degrees");
 }
 
+/// Nobody but the wanted person is published, so others are worth a line when that one stays away.
+void Tracker::NoteOther(std::int32_t user, std::int64_t now_ns) {
+  if (others_.empty()) other_since_ns_ = now_ns;
+  if (others_.size() < kMostOthers) others_.insert(user);
+  if (others_reported_ || now_ns - other_since_ns_ < kWantedNs) return;
+  others_reported_ = true;
+  if (const std::string advice = Advice(); !advice.empty()) messages_.push_back(advice);
+}
+
+std::string Tracker::AdviceOf(std::int32_t user) const {
+  const auto found = counts_.people.find(user);
+  if (found == counts_.people.end()) return "";
+  if (found->second.fault != Fault::kNone) return skeleton::Advice(found->second.fault);
+  if (camera_ || published_ != user) return "";
+  return not_placed_.empty() ? kNotPlaced : not_placed_;
+}
+
+std::string Tracker::Advice() const {
+  if (options_.user && counts_.people.count(*options_.user) == 0 && !others_.empty()) {
+    std::string seen;
+    for (const std::int32_t other : others_)
+      seen += (seen.empty() ? "" : ", ") + std::to_string(other);
+    return "person " + std::to_string(*options_.user) + " was not seen; seen: " + seen +
+           "; choose one of them with --user, or leave it out";
+  }
+  return decoder_.NoSkeleton();
+}
+
 void Tracker::Report(std::int32_t user, Person& person, Fault fault) {
   if (fault == person.reported) return;
   person.reported = fault;
   const std::string who = "person " + std::to_string(user) + ": ";
-  messages_.push_back(who +
-                      (fault == Fault::kNone ? "the skeleton is plausible again" : Advice(fault)));
+  messages_.push_back(
+      who + (fault == Fault::kNone ? "the skeleton is plausible again" : skeleton::Advice(fault)));
 }
 
 }  // namespace footing::skeleton

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ struct PersonCounts {
 };
 
 struct TrackerCounts {
-  std::uint64_t packets = 0, bytes = 0, rejected_packets = 0, skeletons = 0, published = 0;
+  std::uint64_t packets = 0, bytes = 0, rejected_packets = 0, skeletons = 0;
   std::uint64_t overtaken = 0;  ///< Skeletons that came after a newer one of their person.
   std::map<std::int32_t, PersonCounts> people;  ///< By user; bounded as the decoder's.
 };
@@ -53,8 +54,14 @@ class Tracker {
   void Flush(std::int64_t now_ns, std::int64_t wall_ns, std::vector<Observation>& out);
 
   /// Lines for a person since the last call: packets that cannot be read, a fault that came or
-  /// went, the placement.
+  /// went, the placement, a person who is wanted and not seen.
   std::vector<std::string> Messages();
+
+  /// What is wrong with a person's skeleton and what to do, also while the camera is not placed;
+  /// empty when all is well.
+  std::string AdviceOf(std::int32_t user) const;
+  /// Why nobody is published at all, where what arrives shows it.
+  std::string Advice() const;
 
   const TrackerCounts& counts() const { return counts_; }
   const DecoderCounts& decoder_counts() const { return decoder_.counts(); }
@@ -77,7 +84,8 @@ class Tracker {
             std::vector<Observation>& out);
   Person& PersonOf(std::int32_t user, std::int64_t now_ns);
   bool IsPublished(std::int32_t user, std::int64_t now_ns);
-  void Stand(const Skeleton& skeleton);
+  void Stand(const Decoded& decoded, const Skeleton& gated, std::int64_t exposed_ns);
+  void NoteOther(std::int32_t user, std::int64_t now_ns);
   void Report(std::int32_t user, Person& person, Fault fault);
 
   TrackerOptions options_;
@@ -87,9 +95,13 @@ class Tracker {
   std::optional<CameraPlace> camera_;
   Eigen::Isometry3d X_WK_ = Eigen::Isometry3d::Identity();
   std::vector<Skeleton> standing_;
+  std::int64_t standing_since_ns_ = 0;
+  std::string not_placed_;
+  std::set<std::int32_t> others_;  // Seen, and not the wanted one; a few.
+  std::int64_t other_since_ns_ = 0;
+  bool others_reported_ = false;
   TrackerCounts counts_;
   std::vector<std::string> messages_;
-  std::string last_problem_;
   osc::Packet packet_;
   std::vector<Decoded> complete_;
 };

@@ -88,7 +88,7 @@ class BundleWriter {
     const std::string subject = key_.SubjectOf(person.participant);
     std::vector<std::vector<std::string>> scans = {{"filename", "acq_time"}};
     for (const Trial& trial : person.trials) {
-      if (trial.outcome == "interrupted") continue;
+      if (trial.outcome == records::kInterrupted) continue;
       const auto written = WriteTrial(subject, trial);
       if (!written) return written.error();
       const double since_first_s =

@@ -44,12 +44,12 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
         ++progress.attempts[phase_of_trial];
         progress.interrupted_trial = event.Text("trial");
         break;
-      case EventKind::kTrialFinished:
-        progress.interrupted_trial.clear();
-        if (const std::string outcome = event.Text("outcome"); EndedInOrder(outcome)) {
-          progress.outcomes[phase_of_trial] = outcome;
-        }
+      case EventKind::kTrialFinished: {
+        const std::string outcome = event.Text("outcome");
+        if (outcome != kInterrupted) progress.interrupted_trial.clear();
+        if (EndedInOrder(outcome)) progress.outcomes[phase_of_trial] = outcome;
         break;
+      }
       case EventKind::kNote:
         progress.rested_at_s = event.Number(kRestedAt, progress.rested_at_s);
         break;

@@ -26,7 +26,7 @@ struct Progress {
   std::map<std::string, std::string> outcomes;
   double active_s = 0;            ///< How long the participant has been moving.
   double rested_at_s = 0;         ///< The same when they last had a long rest (kRestedAt).
-  std::string interrupted_trial;  ///< Began and did not finish; empty: none.
+  std::string interrupted_trial;  ///< Without an end, or with kInterrupted; empty: none.
 };
 
 Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>& events);

@@ -31,7 +31,7 @@ Trial Begun(const Event& event, const Records& records) {
   trial.position = Position(records, trial.interface);
   trial.attempt = static_cast<std::size_t>(event.Number("attempt"));
   trial.started_wall_ns = event.wall_ns;
-  trial.outcome = "interrupted";
+  trial.outcome = kInterrupted;  // Until its end.
   trial.heading_oscillation_rad = trial.anticipation_s = kUnknown;
   trial.recording = event.Text("recording");
   trial.synthetic = records.synthetic;
@@ -203,7 +203,7 @@ Records Collect(const std::vector<Event>& events) {
 }
 
 bool EndedInOrder(const std::string& outcome) {
-  return outcome != "interrupted" && outcome != kDeviceLost && outcome != kBrokenOff;
+  return outcome != kInterrupted && outcome != kDeviceLost && outcome != kBrokenOff;
 }
 
 std::vector<Failure> FailuresOf(const Records& records, const std::string& trial) {

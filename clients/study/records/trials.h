@@ -14,6 +14,8 @@ namespace footing::study::records {
 inline constexpr const char* kDeviceLost = "device_lost";
 /// Of a trial that a server, the lease or the recording has ended: it does not count.
 inline constexpr const char* kBrokenOff = "broken_off";
+/// Of a trial during which the program was interrupted or killed: it does not count.
+inline constexpr const char* kInterrupted = "interrupted";
 
 struct Failure {
   std::uint64_t number = 0;  ///< The server's.
@@ -42,7 +44,7 @@ struct Trial {
   std::size_t position = 0;  ///< Of the interface in the participant's order, from 1.
   std::size_t attempt = 0;
   std::int64_t started_wall_ns = 0;
-  /// "finished", "timed_out", "stopped", kDeviceLost, kBrokenOff; "interrupted": no end.
+  /// "finished", "timed_out", "stopped", kDeviceLost, kBrokenOff, kInterrupted.
   std::string outcome;
   double time_s = 0;  ///< From the start line; including put-backs.
   double distance_m = 0;

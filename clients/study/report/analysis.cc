@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "clients/study/report/figure.h"
+#include "clients/study/report/measure_table.h"
+#include "clients/study/report/notes.h"
 #include "common/text/number.h"
 
 namespace footing::study::report {
@@ -31,9 +34,9 @@ bool Comparable(const statistics::StudyTable& table, const std::string& control)
   return table.groups.size() > 1 && table.groups.front().name == control;
 }
 
-ordered_json Groups(const statistics::StudyTable& table) {
+ordered_json Groups(const Measure& measure, const plan::Protocol& protocol) {
   ordered_json groups = ordered_json::array();
-  for (const statistics::Group& group : table.groups) {
+  for (const statistics::Group& group : TableOf(measure, protocol).groups) {
     const auto [least, greatest] = std::minmax_element(group.values.begin(), group.values.end());
     double sum = 0;
     for (const double value : group.values) sum += value;
@@ -43,6 +46,7 @@ ordered_json Groups(const statistics::StudyTable& table) {
                       {"median", QuartilesOf(group.values).median},
                       {"least", *least},
                       {"greatest", *greatest}});
+    if (measure.times_to_failure) groups.back()["censored"] = measure.censored(group.name);
   }
   return groups;
 }
@@ -57,8 +61,10 @@ ordered_json ToJson(const TestOptions& options) {
 /// A measure with its groups and tests.
 ordered_json ToJson(const Measure& measure, const plan::Protocol& protocol,
                     const TestOptions& options) {
-  const statistics::StudyTable table = TableOf(measure, protocol);
-  ordered_json one = {{"id", measure.id}, {"title", measure.title}, {"groups", Groups(table)}};
+  const statistics::StudyTable table = TableOf(Measured(measure), protocol);
+  ordered_json one = {
+      {"id", measure.id}, {"title", measure.title}, {"groups", Groups(measure, protocol)}};
+  if (std::string note = NoteOn(measure, protocol); !note.empty()) one["note"] = std::move(note);
   std::set<std::string> participants;
   for (const Value& value : measure.values) participants.insert(value.participant);
   one["participants"] = participants.size();
@@ -69,7 +75,7 @@ ordered_json ToJson(const Measure& measure, const plan::Protocol& protocol,
     one["paired"] = Tested(table, statistics::TestKind::kPaired, options);
   }
   if (measure.id.ends_with("_failures_all") && !measure.all_zero()) {
-    one["rate"] = Tested(table, statistics::TestKind::kRate, options);
+    one["rate"] = Tested(RateTableOf(measure, protocol), statistics::TestKind::kRate, options);
   }
   return one;
 }

@@ -22,10 +22,11 @@ struct TestOptions {
 
 struct Analysis {
   /// {name, control, participants, withdrawn, unfinished, synthetic, simulated_time, tests:
-  /// {alternative, ties, method, seed}, measures: [{id, title, groups, participants, test,
-  /// paired_participants, paired, rate}], latency:
-  /// [{interface, stage, n, p50_ms, p95_ms}]}; `test`, `paired` and `rate` (of all failures
-  /// together) are reports of footing-eval stats, or {error}.
+  /// {alternative, ties, method, seed}, measures: [{id, title, groups: [{interface, n, mean,
+  /// median, least, greatest, censored}], note, participants, test, paired_participants, paired,
+  /// rate}], latency: [{interface, stage, n, p50_ms, p95_ms}]}; `test`, `paired` and `rate` (of all
+  /// failures together) are reports of footing-eval stats, or {error}; `censored` is of times to
+  /// failure; `note` is there where the values need one.
   nlohmann::ordered_json json;
   std::vector<Measure> measures;
   std::vector<StageLatency> latency;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "clients/study/report/measure_table.h"
 #include "common/statistics/quantile.h"
 #include "common/text/number.h"
 
@@ -43,6 +44,7 @@ std::string Box(double x, const Axis& axis, const std::vector<double>& values) {
 struct Point {
   double x = 0, y = 0;
   std::string title;
+  bool censored = false;
 };
 
 /// By participant, then from left to right. Points that would cover each other stand side by side.
@@ -61,7 +63,7 @@ std::map<std::string, std::vector<Point>> PointsOf(const Measure& measure, const
         const Value& one = *together[k];
         people[one.participant].push_back(
             {ColumnX(i) + apart * (static_cast<double>(k) - (count - 1) / 2), axis.Y(one.value),
-             one.participant + ": " + text::Shortest(one.value)});
+             one.participant + ": " + text::Shortest(one.value), one.censored});
       }
     }
   }
@@ -112,8 +114,9 @@ std::string Figure(const Measure& measure, const plan::Protocol& protocol) {
     std::string path, circles;
     for (const Point& one : points) {
       path += (path.empty() ? "M" : "L") + N(one.x) + " " + N(one.y);
-      circles += "<circle cx=\"" + N(one.x) + "\" cy=\"" + N(one.y) + "\" r=\"" + N(kPointRadius) +
-                 "\"><title>" + Escaped(one.title) + "</title></circle>";
+      circles += std::string("<circle") + (one.censored ? " class=\"censored\"" : "") + " cx=\"" +
+                 N(one.x) + "\" cy=\"" + N(one.y) + "\" r=\"" + N(kPointRadius) + "\"><title>" +
+                 Escaped(one.title) + "</title></circle>";
     }
     svg += "<path class=\"pair\" d=\"" + path + "\"/>" + circles;
   }

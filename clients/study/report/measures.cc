@@ -53,9 +53,14 @@ double CompletionS(const Trials& trials) {
   return TimeS(trials) / static_cast<double>(trials.size());
 }
 
-double MeanTimeToFailureS(const Trials& trials) {
+std::size_t FailuresIn(const Trials& trials) {
   std::size_t failures = 0;
   for (const Trial* trial : trials) failures += trial->failure_count();
+  return failures;
+}
+
+double MeanTimeToFailureS(const Trials& trials) {
+  const std::size_t failures = FailuresIn(trials);
   const double time_s = TimeS(trials);
   return time_s > 0 ? time_s / static_cast<double>(std::max<std::size_t>(1, failures)) : kNone;
 }
@@ -93,7 +98,8 @@ class TrialMeasures {
       const double exposure_min = TimeS(trials) / kSecondsPerMinute;
       const bool whole = trials.size() >= Planned(kind) && exposure_min > 0;
       if (!std::isfinite(value) || (measure.counts && !whole)) continue;
-      measure.values.push_back({std::get<0>(key), std::get<1>(key), value, exposure_min});
+      const bool censored = measure.times_to_failure && FailuresIn(trials) == 0;
+      measure.values.push_back({std::get<0>(key), std::get<1>(key), value, exposure_min, censored});
     }
     list.push_back(std::move(measure));
   }
@@ -159,6 +165,7 @@ std::vector<Measure> OfRatings(const std::vector<Records>& people) {
 
 Measure OfActiveTime(const std::vector<Records>& people) {
   Measure measure{Section::kSurvey, "active_min", "Time in motion, minutes", TestKind::kSteel, {}};
+  measure.zeros_unmeasured = true;  // The controllers of a joystick and boards are not body-worn.
   for (const Records& person : people) {
     for (const auto& [interface, active_s] : person.active_s) {
       measure.values.push_back({person.participant, interface, active_s / kSecondsPerMinute});
@@ -191,6 +198,12 @@ std::vector<double> Measure::Of(const std::string& interface) const {
   return found;
 }
 
+std::size_t Measure::censored(const std::string& interface) const {
+  return static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(),
+                    [&](const Value& one) { return one.censored && one.interface == interface; }));
+}
+
 bool Measure::all_zero() const {
   return std::all_of(values.begin(), values.end(), [](const Value& one) { return one.value == 0; });
 }
@@ -213,7 +226,9 @@ std::vector<Measure> Measures(const plan::Protocol& protocol, const std::vector<
                 "test_mean_time_to_failure_s",
                 "Test track, mean time to failure, s",
                 TestKind::kSteel,
-                {}},
+                {},
+                /*counts=*/false,
+                /*times_to_failure=*/true},
                MeanTimeToFailureS);
   measures.Add("straight",
                {Section::kControl,
@@ -244,45 +259,6 @@ std::vector<Measure> Measures(const plan::Protocol& protocol, const std::vector<
   for (Measure& rating : OfRatings(people)) measures.list.push_back(std::move(rating));
   std::erase_if(measures.list, [](const Measure& one) { return one.values.empty(); });
   return std::move(measures.list);
-}
-
-std::vector<std::string> InOrder(const plan::Protocol& protocol) {
-  std::vector<std::string> names = {protocol.control};
-  for (const std::string& interface : protocol.interfaces) {
-    if (interface != protocol.control) names.push_back(interface);
-  }
-  return names;
-}
-
-statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol) {
-  statistics::StudyTable table;
-  std::vector<std::string> kept;
-  for (const std::string& name : InOrder(protocol)) {
-    std::vector<double> values = measure.Of(name);
-    if (values.empty()) continue;
-    kept.push_back(name);
-    std::vector<double>& exposures = table.exposures.emplace_back();
-    for (const Value& one : measure.values) {
-      if (one.interface == name) exposures.push_back(measure.counts ? one.exposure_min : 1);
-    }
-    table.groups.push_back({name, std::move(values)});
-  }
-  std::map<std::string, std::map<std::string, double>> by_person;
-  for (const Value& one : measure.values) by_person[one.participant][one.interface] = one.value;
-  statistics::Blocks blocks;
-  blocks.groups = kept;
-  for (const auto& [participant, values] : by_person) {
-    if (values.size() != kept.size()) continue;
-    blocks.subjects.push_back(participant);
-    std::vector<double>& row = blocks.values.emplace_back();
-    for (const std::string& name : kept) row.push_back(values.at(name));
-  }
-  if (blocks.subjects.size() > 1) {
-    table.blocks = std::move(blocks);
-  } else if (by_person.size() < measure.values.size()) {
-    table.unpaired = "fewer than two participants have a value for every interface";
-  }
-  return table;
 }
 
 }  // namespace footing::study::report

@@ -1,14 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
 #include "clients/study/records/trials.h"
 #include "common/statistics/analysis.h"
-#include "common/statistics/samples.h"
-#include "common/statistics/study_table.h"
 
 namespace footing::study::report {
 
@@ -23,6 +22,7 @@ struct Value {
   std::string interface;
   double value = 0;
   double exposure_min = 0;  ///< Of a count: the time behind it.
+  bool censored = false;    ///< A time to failure without a failure: a lower bound.
 };
 
 /// Something that is compared between interfaces, one value for each participant and interface.
@@ -35,9 +35,14 @@ struct Measure {
   std::vector<Value> values;
   /// Every value is a count over a time. Without a time or one of the planned trials there is none.
   bool counts = false;
+  /// Every value is a time to failure; some may be censored.
+  bool times_to_failure = false;
+  /// An interface with zeros only was not measured, so it is not tested.
+  bool zeros_unmeasured = false;
 
   /// Of an interface, in the order of the participants.
   std::vector<double> Of(const std::string& interface) const;
+  std::size_t censored(const std::string& interface) const;
   bool all_zero() const;
 };
 
@@ -46,12 +51,5 @@ struct Measure {
 /// minutes, ratings. Participants who have withdrawn are left out.
 std::vector<Measure> Measures(const plan::Protocol& protocol,
                               const std::vector<records::Records>& people);
-
-/// The interfaces of a protocol, the control first.
-std::vector<std::string> InOrder(const plan::Protocol& protocol);
-
-/// In their order. Interfaces without a value are left out; the blocks are of the participants with
-/// a value in each group, where there are two of them.
-statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol);
 
 }  // namespace footing::study::report

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "clients/study/report/figure.h"
+#include "clients/study/report/measure_table.h"
 #include "clients/study/report/tables.h"
 
 namespace footing::study::report {
@@ -22,14 +23,16 @@ constexpr const char* kStyle =
     "svg{max-width:100%;height:auto}svg text{font-size:11px;fill:#555}.grid{stroke:#eee}"
     ".zero{stroke:#999}rect{fill:#dfe8f1;stroke:#89a}.bar{stroke:none}"
     ".median{stroke:#246;stroke-width:2}.pair{fill:none;stroke:#246;opacity:.25}"
-    "circle{fill:#246;opacity:.7}.synthetic{background:#fff3cd;padding:.5rem 1rem}"
+    "circle{fill:#246;opacity:.7}.censored{fill:#fff;stroke:#246}.synthetic{background:#fff3cd;"
+    "padding:.5rem 1rem}"
     ".note{color:#777;font-size:13px;max-width:60rem}.believe{border-left:3px solid #246;"
     "padding-left:.8rem;max-width:60rem}@media print{.measure{break-inside:avoid}}"
     "@media(max-width:30rem){table{font-size:12px}td,th{padding-right:.4rem}}";
 
 constexpr const char* kHowToRead =
     "Each point is a participant, each box reaches from the lower to the upper quartile with the "
-    "median as a line, and thin lines join the values of one participant. Each p is adjusted for "
+    "median as a line, and thin lines join the values of one participant. A hollow point is a "
+    "censored time: the trial ended without a failure. Each p is adjusted for "
     "the comparisons of its measure, not for the number of measures: decide before the study "
     "which measures it is about. The paired p permutes the labels within each participant and "
     "takes the greatest mean difference from the control, which needs neither normal values nor "
@@ -57,6 +60,10 @@ constexpr const char* kSimulatedTime =
 constexpr const char* kSynthetic =
     "Synthetic: simulated devices or random answers. It says nothing about people.";
 
+/// Where the test for independent groups has failed.
+constexpr const char* kBelievePaired =
+    "Believe the paired p: each participant used every interface.";
+
 std::string Paragraph(const std::string& kind, const std::string& text) {
   return "<p class=\"" + kind + "\">" + Escaped(text) + "</p>";
 }
@@ -74,19 +81,31 @@ std::string Heading(const ordered_json& json) {
   return text + "; tests look for values " + alternative + " than the control's only";
 }
 
-/// Of one comparison: what both tests say.
-std::string ComparisonText(const ordered_json& row, const std::string& test,
-                           const ordered_json& measure) {
-  std::string text = NameOfRow(row) + ": " + test + " p " + PText(row, "p");
-  if (!measure.contains("paired") || measure["paired"].contains("error")) return text;
-  for (const ordered_json& paired : measure["paired"]["rows"]) {
-    if (paired["group"] != row["group"]) continue;
-    text += "; paired p " + PText(paired, "permutation_p") + ", Wilcoxon " +
-            PText(paired, "wilcoxon_exact_holm") + ", blocked Dunnett " +
-            PText(paired, "block_dunnett_p") + ", Cliff's delta " +
-            Short(paired["cliffs_delta"], "estimate");
+/// What the tests within participants say of one comparison.
+std::string PairedText(const ordered_json& row) {
+  return "paired p " + PText(row, "permutation_p") + ", Wilcoxon " +
+         PText(row, "wilcoxon_exact_holm") + ", blocked Dunnett " + PText(row, "block_dunnett_p") +
+         ", Cliff's delta " + Short(row["cliffs_delta"], "estimate");
+}
+
+bool Has(const ordered_json& measure, const char* test) {
+  return measure.contains(test) && !measure[test].contains("error");
+}
+
+/// Of each comparison: what both tests say, as far as they could be made.
+std::string ComparisonLines(const ordered_json& measure) {
+  const bool independent = Has(measure, "test"), paired = Has(measure, "paired");
+  if (!independent && !paired) return "";
+  const ordered_json& rows = measure[independent ? "test" : "paired"]["rows"];
+  std::string lines;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    lines += "\n  " + NameOfRow(rows[i]) + ": ";
+    if (independent) {
+      lines += measure["test"]["test"].get<std::string>() + " p " + IndependentPText(rows[i]);
+    }
+    if (paired) lines += (independent ? "; " : "") + PairedText(measure["paired"]["rows"][i]);
   }
-  return text;
+  return lines;
 }
 
 /// A remark of a test, which names fields of its report, in words of the page.
@@ -117,6 +136,7 @@ std::string MeasureBlock(const Measure& measure, const ordered_json& json,
                       GroupTable(json["groups"]);
   if (json.contains("rate")) block += RateTable(json["rate"]);
   block += "</div></div>";
+  if (json.contains("note")) block += Paragraph("believe", json["note"]);
   if (!json.contains("test")) return block + "</div>";
   const ordered_json& test = json["test"];
   block += TestTable(test);
@@ -125,7 +145,7 @@ std::string MeasureBlock(const Measure& measure, const ordered_json& json,
     block += Paragraph("believe", test.value("note", "")) +
              Paragraph("note", test.value("procedure", "") + ".");
   } else if (json.contains("paired")) {
-    block += Paragraph("believe", "Believe the paired p: each participant used every interface.");
+    block += Paragraph("believe", kBelievePaired);
   }
   if (json.contains("paired") && !json["paired"].contains("error")) block += PairedNotes(json);
   return block + "</div>";
@@ -154,6 +174,41 @@ std::string SectionBlock(Section section, const Analysis& analysis,
   return std::string("<h2>") + Title(section) + "</h2>" + block;
 }
 
+std::string GroupLines(const ordered_json& measure) {
+  std::string lines;
+  for (const ordered_json& group : measure["groups"]) {
+    lines += "\n  " + group["interface"].get<std::string>() + ": median " + Short(group, "median") +
+             ", mean " + Short(group, "mean") + ", n " + Short(group, "n") +
+             (group.contains("censored") ? ", censored " + Short(group, "censored") : "");
+  }
+  return measure.contains("note") ? lines + "\n  " + measure["note"].get<std::string>() : lines;
+}
+
+/// What to believe of the tests of a measure, without the reasons, and what there is to remark on
+/// the data.
+std::string BelieveText(const ordered_json& measure) {
+  const std::string note = measure["test"].value("note", kBelievePaired);
+  std::string text = note.substr(0, note.find(':'));
+  for (const char* key : {"test", "paired"}) {
+    if (!Has(measure, key)) continue;
+    for (const ordered_json& remark : measure[key]["remarks"]) text += "; " + ForTheReader(remark);
+  }
+  return text + ".";
+}
+
+std::string TestLines(const ordered_json& measure) {
+  if (!measure.contains("test")) return "";
+  std::string lines;
+  if (!Has(measure, "test")) lines += "\n  " + measure["test"]["error"].get<std::string>();
+  lines += ComparisonLines(measure);
+  if (Has(measure, "rate")) {
+    for (const ordered_json& row : measure["rate"]["rows"]) lines += "\n  " + RateText(row);
+  }
+  if (Has(measure, "paired")) lines += "\n  " + FriedmanText(measure["paired"]);
+  if (!Has(measure, "test") && !Has(measure, "paired")) return lines;
+  return lines + "\n  " + BelieveText(measure);
+}
+
 }  // namespace
 
 std::string Page(const Analysis& analysis, const plan::Protocol& protocol,
@@ -174,26 +229,18 @@ std::string Summary(const Analysis& analysis) {
   const ordered_json& json = analysis.json;
   std::string text = json["name"].get<std::string>() + ": " + Heading(json);
   if (analysis.synthetic) text += std::string("\n") + kSynthetic;
-  for (const ordered_json& one : json["measures"]) {
+  bool tested = false;
+  for (std::size_t i = 0; i < analysis.measures.size(); ++i) {
+    const ordered_json& one = json["measures"][i];
+    tested = tested || one.contains("test");
     text += "\n" + one["title"].get<std::string>();
-    for (const ordered_json& group : one["groups"]) {
-      text += "\n  " + group["interface"].get<std::string>() + ": median " +
-              Short(group, "median") + ", mean " + Short(group, "mean") + ", n " +
-              Short(group, "n");
-    }
-    if (!one.contains("test")) continue;
-    if (one["test"].contains("error")) {
-      text += "\n  " + one["test"]["error"].get<std::string>();
-      continue;
-    }
-    for (const ordered_json& row : one["test"]["rows"]) {
-      text += "\n  " + ComparisonText(row, one["test"]["test"], one);
-    }
-    if (one.contains("paired") && one["paired"].contains("friedman_p")) {
-      text += "\n  " + FriedmanText(one["paired"]);
+    if (analysis.measures[i].counts && analysis.measures[i].all_zero()) {
+      text += "\n  none at all";
+    } else {
+      text += GroupLines(one) + TestLines(one);
     }
   }
-  return text;
+  return tested ? text + "\nWhy to believe which p: see the notes in --json or the report." : text;
 }
 
 }  // namespace footing::study::report

@@ -70,6 +70,13 @@ bool AllZero(const ordered_json& measure) {
       [](const ordered_json& group) { return group["least"] == 0 && group["greatest"] == 0; });
 }
 
+/// How many trials of a group are lower bounds of a time to failure; empty: none.
+std::string CensoredText(const ordered_json& group) {
+  const auto censored = group.value("censored", std::size_t{0});
+  if (censored == 0) return "";
+  return ", " + std::to_string(censored) + " of " + Short(group, "n") + " censored";
+}
+
 std::string ErrorNote(const ordered_json& test) {
   return "<p class=\"note\">" + Escaped(test["error"].get<std::string>()) + "</p>";
 }
@@ -83,6 +90,11 @@ std::string Short(const ordered_json& object, const char* key) {
 
 std::string PText(const ordered_json& object, const char* key) {
   return object.contains(key) && object[key].is_number() ? P(object[key].get<double>()) : "–";
+}
+
+std::string IndependentPText(const ordered_json& row) {
+  const bool too_few = row.value("n", 2) < 2 && row.value("n_control", 2) < 2;
+  return too_few ? "– (too few values)" : PText(row, "p");
 }
 
 std::string NameOfRow(const ordered_json& row) {
@@ -103,9 +115,10 @@ std::string OverviewTable(const ordered_json& analysis,
     for (const std::string& interface : interfaces) {
       std::string cell = "–";
       for (const ordered_json& group : measure["groups"]) {
-        if (group["interface"] == interface) cell = Short(group, "median");
+        if (group["interface"] != interface) continue;
+        cell = Short(group, "median") + SignificantP(measure, interface) + CensoredText(group);
       }
-      cells.push_back(cell + SignificantP(measure, interface));
+      cells.push_back(cell);
     }
     table += Row(cells, "td");
   }
@@ -113,12 +126,19 @@ std::string OverviewTable(const ordered_json& analysis,
 }
 
 std::string GroupTable(const ordered_json& groups) {
-  std::string table =
-      "<table>" + Row({"interface", "n", "mean", "median", "least", "greatest"}, "th");
+  std::vector<std::string> heads = {"interface", "n", "mean", "median", "least", "greatest"};
+  const bool censored = std::any_of(groups.begin(), groups.end(), [](const ordered_json& group) {
+    return group.contains("censored");
+  });
+  if (censored) heads.emplace_back("censored");
+  std::string table = "<table>" + Row(heads, "th");
   for (const ordered_json& group : groups) {
-    table += Row({group["interface"], Short(group, "n"), Short(group, "mean"),
-                  Short(group, "median"), Short(group, "least"), Short(group, "greatest")},
-                 "td");
+    std::vector<std::string> cells = {group["interface"]};
+    for (const char* key : {"n", "mean", "median", "least", "greatest"}) {
+      cells.push_back(Short(group, key));
+    }
+    if (censored) cells.push_back(Short(group, "censored"));
+    table += Row(cells, "td");
   }
   return table + "</table>";
 }
@@ -132,7 +152,8 @@ std::string TestTable(const ordered_json& test) {
   heads.insert(heads.end(), {"Hodges-Lehmann (95 %)", "Cliff's delta (95 %)"});
   std::string table = "<table>" + Row(heads, "th");
   for (const ordered_json& row : test["rows"]) {
-    std::vector<std::string> cells = {NameOfRow(row), Short(row, "statistic"), PText(row, "p")};
+    std::vector<std::string> cells = {NameOfRow(row), Short(row, "statistic"),
+                                      IndependentPText(row)};
     if (of_means) {
       cells.insert(cells.end(),
                    {Short(row, "estimate"), IntervalText(row), EffectText(row, "hodges_lehmann")});
@@ -168,13 +189,20 @@ std::string FriedmanText(const ordered_json& paired) {
          PText(paired, "friedman_permutation_p") + ".";
 }
 
+std::string RateText(const ordered_json& row) {
+  return NameOfRow(row) + ": " + Short(row, "estimate") + " times the failures per minute (" +
+         IntervalText(row) + "), p " + PText(row, "p") + ", paired p " + PText(row, "paired_p");
+}
+
 std::string RateTable(const ordered_json& rate) {
   if (rate.contains("error")) return ErrorNote(rate);
   std::string table =
-      "<table>" + Row({"failures a minute", "ratio of rates", "95 % interval", "p"}, "th");
+      "<table>" +
+      Row({"failures a minute", "ratio of rates", "95 % interval", "p", "paired p"}, "th");
   for (const ordered_json& row : rate["rows"]) {
-    table +=
-        Row({NameOfRow(row), Short(row, "estimate"), IntervalText(row), PText(row, "p")}, "td");
+    table += Row({NameOfRow(row), Short(row, "estimate"), IntervalText(row), PText(row, "p"),
+                  PText(row, "paired_p")},
+                 "td");
   }
   return table + "</table>";
 }

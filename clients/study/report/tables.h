@@ -14,6 +14,8 @@ namespace footing::study::report {
 std::string Short(const nlohmann::ordered_json& object, const char* key);
 /// A p for a reader: four decimals, or an en dash.
 std::string PText(const nlohmann::ordered_json& object, const char* key);
+/// The p of a row of independent groups; with one value in each there is nothing to test.
+std::string IndependentPText(const nlohmann::ordered_json& row);
 /// What a row of a test compares.
 std::string NameOfRow(const nlohmann::ordered_json& row);
 
@@ -31,6 +33,8 @@ std::string TestTable(const nlohmann::ordered_json& test);
 std::string PairedTable(const nlohmann::ordered_json& paired);
 /// What Friedman's test says, in a sentence; empty: nothing.
 std::string FriedmanText(const nlohmann::ordered_json& paired);
+/// A ratio of failure rates as a line of text.
+std::string RateText(const nlohmann::ordered_json& row);
 /// The same of rates.
 std::string RateTable(const nlohmann::ordered_json& rate);
 std::string LatencyTable(const std::vector<StageLatency>& latency);

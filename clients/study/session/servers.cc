@@ -164,8 +164,13 @@ std::string Servers::WhyNoDevices() const {
   return lease.refusal().empty() ? "footingd has not given its lease yet" : lease.refusal();
 }
 
-std::string Servers::Links() const {
-  return implementation_->sensor_.Text() + "; " + implementation_->simulation_.Text();
+std::string Servers::WhyNotLive() const {
+  std::string text;
+  for (const ServerLink* link : {&implementation_->sensor_, &implementation_->simulation_}) {
+    if (link->up() && !link->broken()) continue;
+    text += (text.empty() ? "" : "; ") + link->Text();
+  }
+  return text;
 }
 
 void Servers::set_on_frame(std::function<void(const SimulationFrame&)> on_frame) {
@@ -206,8 +211,10 @@ Result<void> Servers::UseInterface(const std::string& interface, const std::stri
 /// the next command says so, but not why.
 Result<void> Servers::StopTrial() {
   const auto goes_on = [this] {
-    const stream::TrialPhase phase = frame().trial.progress.phase;
-    return phase == stream::TrialPhase::kReady || phase == stream::TrialPhase::kRunning;
+    const stream::TrialState& trial = frame().trial;
+    // Before the first trial the character is ready, too.
+    const bool ready = trial.progress.phase == stream::TrialPhase::kReady && !trial.trial.empty();
+    return ready || trial.progress.phase == stream::TrialPhase::kRunning;
   };
   if (!goes_on()) return {};
   v1::Command stop;

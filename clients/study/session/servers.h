@@ -66,8 +66,8 @@ class Servers {
   /// Asks for it again. WhyNoDevices() says why this session does not have it yet; empty: it has.
   void KeepDevices();
   std::string WhyNoDevices() const;
-  /// How the connections stand, for a person.
-  std::string Links() const;
+  /// How the connections that are not live stand, for a person; empty: both are.
+  std::string WhyNotLive() const;
 
   /// Called while the console waits.
   void set_on_frame(std::function<void(const SimulationFrame&)> on_frame);

@@ -25,13 +25,15 @@ class TrialRecorder {
     std::vector<std::pair<std::string, std::string>> attachments;  ///< Name and text.
   };
 
-  /// Returns when something of every server has arrived. `marks` is the metadata record "trial".
+  /// `marks` is the metadata record "trial".
   static Result<std::unique_ptr<TrialRecorder>> Begin(Console& console, Options options,
                                                       const mcap::TextMap& marks);
   ~TrialRecorder();
   TrialRecorder(const TrialRecorder&) = delete;
   TrialRecorder& operator=(const TrialRecorder&) = delete;
 
+  /// Returns when something of every server has arrived.
+  Result<void> AwaitFirst(Console& console) const;
   /// A full disk, as soon as it is noticed.
   const Result<void>& written() const;
   /// Runs until everything up to this instant is in the file, for a short while at most: events

@@ -64,8 +64,12 @@ class TrialRun {
 
   Result<std::string> Run() {
     auto outcome = Attempt();
-    if (outcome || context_.console.interrupted()) return outcome;
-    BreakOff(outcome.error());
+    if (outcome) return outcome;
+    if (context_.console.interrupted()) {
+      CutShort(records::kInterrupted, outcome.error());
+      return outcome;
+    }
+    CutShort(records::kBrokenOff, outcome.error());
     return Error{outcome.error().kind,
                  outcome.error().message +
                      "; this attempt does not count. Put that right, then run the same command"};
@@ -133,6 +137,7 @@ class TrialRun {
         TrialRecorder::Begin(context_.console, std::move(recording), MarksOfRecording());
     if (!recorder) return recorder.error();
     recorder_ = std::move(*recorder);
+    if (const auto first = recorder_->AwaitFirst(context_.console); !first) return first;
     events_.Begin();
     begin_ns_ = complete_ns_ = clock::MonotonicNs();
     if (const auto done = servers_.Call(StartCommand(id_, phase_)); !done) return done;
@@ -163,7 +168,7 @@ class TrialRun {
       if (!recorder_->written()) return recorder_->written().error();
       if (events_.tracker().over()) return events_.tracker().Outcome("stopped");
       if (waited == Waited::kTimeUp) return std::string("timed_out");
-      if (servers_.broken()) return Failure("the trial broke off: " + servers_.Links());
+      if (servers_.broken()) return Failure("the trial broke off: " + servers_.WhyNotLive());
       if (DeviceLost()) return std::string(records::kDeviceLost);
       if (key == 's') return std::string("stopped");
       if (key == 'u') {
@@ -178,7 +183,8 @@ class TrialRun {
     if (context_.console.RunUntil(decided, kLinksWithinS) == Waited::kInterrupted) {
       return Interrupted();
     }
-    return servers_.live() ? Result<void>() : Failure("the trial broke off: " + servers_.Links());
+    return servers_.live() ? Result<void>()
+                           : Failure("the trial broke off: " + servers_.WhyNotLive());
   }
 
   /// A device that the interface needs has sent nothing for a while.
@@ -225,11 +231,12 @@ class TrialRun {
     return context_.journal.Append(EventKind::kTrialFinished, std::move(fields));
   }
 
-  /// A server, the lease or the recording is gone: marks the attempt, as far as that still works.
-  void BreakOff(const Error& why) {
+  /// A server, the lease or the recording is gone, or the program is interrupted: marks the
+  /// attempt, as far as that still works.
+  void CutShort(const char* outcome, const Error& why) {
     if (!begun_) return;
     ordered_json fields = {{"trial", id_},
-                           {"outcome", records::kBrokenOff},
+                           {"outcome", outcome},
                            {"reason", why.message},
                            {"active_s", active_.seconds() - active_before_s_},
                            {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)}};

@@ -1,9 +1,11 @@
 #include "common/virtual/choreography/script.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "common/text/json_text.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 
 namespace footing::choreography {
@@ -103,6 +105,7 @@ class Parser {
     }
     if (script.duration_s() + key.seconds > kMostSeconds) return Bad("more than an hour");
     if (auto standing = CheckFeet(key); !standing) return standing;
+    if (auto steady = CheckHips(key); !steady) return steady;
     script.keys.push_back(key);
     return {};
   }
@@ -125,6 +128,18 @@ class Parser {
     if (left) At(key.values, field->left) = number * field->scale;
     if (right) At(key.values, field->right) = number * field->scale;
     return {};
+  }
+
+  /// The fifth-order blend of d in T accelerates by 10 / sqrt(3) d / T^2 at most. At 1 g and more
+  /// the body would leave the ground, on which a script has it stand.
+  Result<void> CheckHips(const Key& key) const {
+    const Values before = script.keys.empty() ? Values{} : script.keys.back().values;
+    const double way_m = std::abs(At(key.values, Channel::kCrouch) - At(before, Channel::kCrouch));
+    const double least_s = std::sqrt(10 / std::sqrt(3.0) * way_m / (0.9 * kStandardGravityMps2));
+    if (key.seconds >= least_s) return {};
+    return Bad("crouch_m changes by " + text::Fixed(way_m, 2) + " m in " +
+               text::Fixed(key.seconds, 2) + " s, faster than a body falls: give it " +
+               text::Fixed(std::ceil(100 * least_s) / 100, 2) + " s or more");
   }
 
   /// A foot that is off the ground during this key must not carry before or after.
@@ -158,6 +173,11 @@ double Script::duration_s() const {
   double sum_s = 0;
   for (const Key& key : keys) sum_s += key.seconds;
   return sum_s;
+}
+
+bool Script::EndsInTPose() const {
+  return keys.empty() || std::all_of(keys.back().values.begin(), keys.back().values.end(),
+                                     [](double value) { return value == 0; });
 }
 
 Result<Script> ParseScript(const std::string& text, const std::string& origin) {

@@ -56,6 +56,8 @@ struct Script {
   double sway_m = 0;  ///< Root mean square of the pressure's wandering, each way.
 
   double duration_s() const;
+  /// All channels are 0 at the end, as at the beginning: it can be performed again at once.
+  bool EndsInTPose() const;
 };
 
 /// A script from JSON: {"sway_mm": 2, "keys": [...]}. A key is {"seconds": 2, CHANNEL: VALUE, ...};
@@ -65,7 +67,7 @@ struct Script {
 /// out_m.
 ///
 /// Errors name `origin` and the key: an unknown name, a value out of its range, a foot that lifts
-/// or steps while it carries weight.
+/// or steps while it carries weight, hips that would have to fall faster than a body does.
 Result<Script> ParseScript(const std::string& text, const std::string& origin);
 
 /// Names of the built-in scripts, and one of them; a usage error lists the names.

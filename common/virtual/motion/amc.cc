@@ -7,6 +7,7 @@
 #include "common/units/units.h"
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/rate.h"
+#include "common/virtual/motion/value.h"
 
 namespace footing::motion {
 namespace {
@@ -64,9 +65,9 @@ class Frame {
   Result<double> Next(std::string_view& line, const text::Lines& lines,
                       std::string_view name) const {
     const std::string_view word = text::TakeWord(line);
-    const auto number = text::ToNumber(word);
+    const auto number = ToValue(word);
     if (number) return *number;
-    return lines.Fault("expected a number of " + std::string(name) + ", found " +
+    return lines.Fault("expected a number of " + std::string(name) + " within +-1e9, found " +
                        (word.empty() ? "the end of the line" : text::Quoted(word)));
   }
   Result<void> End(std::string_view line, const text::Lines& lines, std::string_view name) const {

@@ -12,6 +12,7 @@
 #include "common/units/units.h"
 #include "common/virtual/motion/bvh_stem.h"
 #include "common/virtual/motion/rate.h"
+#include "common/virtual/motion/value.h"
 
 namespace footing::motion {
 namespace {
@@ -95,8 +96,8 @@ Result<void> ParseOffset(HeaderTokens& words, double unit_m, Joint& joint) {
   Eigen::Vector3d offset;
   for (int axis = 0; axis < 3; ++axis) {
     const auto word = words.Next();
-    const auto number = text::ToNumber(word);
-    if (!number) return words.Expected("a number of OFFSET", word);
+    const auto number = ToValue(word);
+    if (!number) return words.Expected("a number of OFFSET within +-1e9", word);
     offset(axis) = *number * unit_m;
   }
   joint.offset_m = body::FromYUp(offset);
@@ -169,8 +170,7 @@ Result<Header> ParseHeader(HeaderTokens& words, double unit_m) {
     } else if (word == "}" && !open.empty()) {
       open.pop_back();
     } else {
-      return words.Expected(open.empty() ? "ROOT" : "JOINT, End Site, OFFSET, CHANNELS or '}'",
-                            word);
+      return words.Expected(open.empty() ? "ROOT" : "JOINT, End Site, OFFSET, CHANNELS or }", word);
     }
   } while (!open.empty());
   return header;
@@ -270,10 +270,11 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
     for (std::size_t i = 0; i < columns; ++i) {
       const Channel& channel = header->channels[i];
       const auto word = text::TakeWord(*line);
-      const auto number = text::ToNumber(word);
+      const auto number = ToValue(word);
       if (!number) {
         return lines.Fault("frame " + std::to_string(frame + 1) + ": expected number " +
-                           std::to_string(i + 1) + " of " + std::to_string(columns) + ", found " +
+                           std::to_string(i + 1) + " of " + std::to_string(columns) +
+                           " within +-1e9, found " +
                            (word.empty() ? "the end of the line" : text::Quoted(word)));
       }
       const double value = channel.rotation ? DegreesToRadians(*number) : *number * options.unit_m;

@@ -9,6 +9,7 @@
 #include "common/virtual/motion/c3d_reader.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/rate.h"
+#include "common/virtual/motion/value.h"
 
 namespace footing::motion {
 namespace {
@@ -99,7 +100,8 @@ Eigen::Vector3d PointAt(const C3dReader& reader, const Layout& layout, std::size
   const std::size_t fourth = at + 3 * layout.word();
   const double residual =
       layout.floats ? static_cast<double>(reader.Float(fourth)) : reader.Signed(fourth);
-  const bool seen = residual >= 0 && p.allFinite() && !p.isZero(0);
+  const bool seen = residual >= 0 && p.allFinite() && !p.isZero(0) &&
+                    p.lpNorm<Eigen::Infinity>() <= kGreatestValue;
   return seen ? p : Eigen::Vector3d::Constant(kMissing);
 }
 
@@ -186,9 +188,9 @@ Result<void> ReadFrames(const C3dReader& reader, const Layout& layout, double un
                                                 : reader.Signed(at);
         const double value =
             (raw - analog.offset[channel]) * analog.scale[channel] * analog.general;
-        if (!std::isfinite(value)) {
+        if (!(std::abs(value) <= kGreatestValue)) {
           return InvalidData(file + ": channel " + c3d.analog_names[channel] +
-                             " has no number in frame " + std::to_string(frame + 1));
+                             " has no number within +-1e9 in frame " + std::to_string(frame + 1));
         }
         c3d.analog(static_cast<Eigen::Index>(channel), column) = value;
         at += layout.word();

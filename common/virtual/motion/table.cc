@@ -10,6 +10,7 @@
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/rate.h"
+#include "common/virtual/motion/value.h"
 
 namespace footing::motion {
 namespace {
@@ -78,9 +79,9 @@ Result<Table> ParseTable(std::string_view text, const std::string& file) {
     if (values.size() + labels.size() > kMostValues) return lines.Fault("too many rows");
     for (const std::string& column : table.columns) {
       const std::string_view word = text::TakeWord(*line);
-      const auto number = text::ToNumber(word);
+      const auto number = ToValue(word);
       if (!number) {
-        return lines.Fault("column " + column + ": expected a number, found " +
+        return lines.Fault("column " + column + ": expected a number within +-1e9, found " +
                            (word.empty() ? "the end of the line" : text::Quoted(word)));
       }
       values.push_back(*number);

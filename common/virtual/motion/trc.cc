@@ -9,6 +9,7 @@
 #include "common/text/number.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/rate.h"
+#include "common/virtual/motion/value.h"
 
 namespace footing::motion {
 namespace {
@@ -56,7 +57,7 @@ Result<Head> ParseHead(text::Lines& lines) {
 
 /// One coordinate; nothing where the field has no number in it.
 std::optional<double> Coordinate(const std::vector<std::string_view>& fields, std::size_t index) {
-  return index < fields.size() ? text::ToNumber(fields[index]) : std::nullopt;
+  return index < fields.size() ? ToValue(fields[index]) : std::nullopt;
 }
 
 bool IsGap(std::string_view field) {
@@ -108,8 +109,8 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
         const std::size_t at = 2 + 3 * marker + axis;
         const auto number = Coordinate(fields, at);
         if (!number && at < fields.size() && !IsGap(fields[at])) {
-          return lines.Fault("marker " + tracks.names[marker] + ": expected a number, found " +
-                             text::Quoted(fields[at]));
+          return lines.Fault("marker " + tracks.names[marker] +
+                             ": expected a number within +-1e9, found " + text::Quoted(fields[at]));
         }
         p(static_cast<int>(axis)) = number ? *number * head->unit_m : kMissingTrcValue;
       }
@@ -160,6 +161,8 @@ std::string WriteTrc(const MarkerTracks& tracks, const std::string& name) {
         if (Seen(p)) text::AppendFixed(text, 1000 * p(axis), kPlaceDecimals);
       }
     }
+    // OpenSim drops an empty last field unless a tab ends it.
+    if (text.back() == '\t') text += '\t';
     text += '\n';
   }
   return text;

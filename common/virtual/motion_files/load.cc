@@ -22,6 +22,7 @@ namespace footing::motion_files {
 namespace {
 
 constexpr std::size_t kMostBytes = 512u << 20;
+constexpr double kFastestMps = 100;  // Of a root, ten times that of a sprinter.
 
 Result<std::string> Read(const std::string& path) { return config::ReadTextFile(path, kMostBytes); }
 
@@ -110,14 +111,7 @@ Result<LoadedMotion> FromBvh(const std::string& text, const std::string& path,
   return InLikelyUnit(std::move(canonical), path);
 }
 
-}  // namespace
-
-bool IsMotionFile(const std::string& path) {
-  const std::string ending = Ending(path);
-  return IsMarkerFile(ending) || ending == "bvh" || ending == "amc";
-}
-
-Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options) {
+Result<LoadedMotion> ReadMotion(const std::string& path, const LoadOptions& options) {
   if (!IsMotionFile(path)) {
     return UsageError(path + ": not a motion file: expected .bvh, .amc, .trc or .c3d");
   }
@@ -141,6 +135,35 @@ Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& opti
   if (!motion) return motion.error();
   return LoadedMotion{motion::Canonical(motion::WithoutHalfTurns(*std::move(motion))), "",
                       std::nullopt};
+}
+
+/// A recording may lose its person for a moment, but nobody moves like that.
+Result<void> CheckSteps(const motion::Motion& motion, const std::string& path) {
+  for (Eigen::Index i = 1; i < motion.frames(); ++i) {
+    const double step_m = (motion.q.col(i) - motion.q.col(i - 1)).head<3>().norm();
+    if (step_m * motion.rate_hz <= kFastestMps) continue;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  ": the root moves by %.3g m between frames %td and %td (%.3f s), a fault of the "
+                  "recording; cut it there or repair it",
+                  step_m, i, i + 1, motion.start_s + static_cast<double>(i) / motion.rate_hz);
+    return InvalidData(path + text);
+  }
+  return {};
+}
+
+}  // namespace
+
+bool IsMotionFile(const std::string& path) {
+  const std::string ending = Ending(path);
+  return IsMarkerFile(ending) || ending == "bvh" || ending == "amc";
+}
+
+Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options) {
+  auto loaded = ReadMotion(path, options);
+  if (!loaded) return loaded;
+  if (const auto steady = CheckSteps(loaded->motion, path); !steady) return steady.error();
+  return loaded;
 }
 
 Result<motion::MarkerTracks> LoadMarkers(const std::string& path) {

@@ -99,11 +99,13 @@ double Driver::CurvatureAhead(const Observation& now, double speed_mps) const {
   const track::TrackPlace place = track::Locate(track_, now.p_W_m);
   double pit_m = 0;
   const double edge_m = PitAhead(now, &pit_m);
-  const double sight_m = std::min(3 + 2.5 * std::max(0.0, speed_mps), edge_m + pit_m);
+  const double far_edge_m = edge_m + pit_m;
+  const double sight_m = std::min(3 + 2.5 * std::max(0.0, speed_mps), far_edge_m);
   double sharpest = 0;
   for (double ahead_m = 0; ahead_m < sight_m; ahead_m += 0.5) {
     const double from_rad = track::CentreAhead(track_, place, ahead_m).heading_rad;
-    const double to_rad = track::CentreAhead(track_, place, ahead_m + kSpanM).heading_rad;
+    const double to_m = std::min(ahead_m + kSpanM, far_edge_m);
+    const double to_rad = track::CentreAhead(track_, place, to_m).heading_rad;
     sharpest = std::max(sharpest, std::fabs(WrapAngle(to_rad - from_rad)) / kSpanM);
   }
   return sharpest;

@@ -1,11 +1,14 @@
 #include "daemon/offline/tune/trial.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/noise/random.h"
 #include "daemon/offline/tune/gait_meter.h"
 #include "daemon/simulation/biped/limits.h"
+#include "daemon/simulation/terrain/track.h"
 
 namespace footing::tune {
 namespace {
@@ -112,6 +115,17 @@ std::uint64_t MixSeeds(std::uint64_t a, std::uint64_t b) {
   return z ^ (z >> 31);
 }
 
+Result<void> CheckSpeeds(Gait gait, const std::vector<double>& speeds_mps) {
+  for (const double speed_mps : speeds_mps) {
+    const double most_mps = biped::Limited({.gait = gait, .speed_mps = speed_mps}).speed_mps;
+    if (speed_mps <= most_mps) continue;
+    return UsageError("--speeds: " + text::Shortest(speed_mps) + " m/s is beyond the limit of " +
+                      std::string(stream::Name(gait)) + ", " + text::Shortest(most_mps) +
+                      " m/s; choose lower speeds");
+  }
+  return {};
+}
+
 std::vector<Task> TasksOf(Gait gait, const std::vector<double>& speeds_mps, std::size_t set) {
   const Range tested = TestedMps(gait);
   const double own_mps = speeds_mps[set];
@@ -181,11 +195,19 @@ bool ScoresHeading(const Disturbance& disturbance) {
 
 bool ScoresLegs(const Disturbance& disturbance) { return disturbance.kick_ns <= kSmallKickNs; }
 
+namespace {
+
+/// The pit's near edge, m along the track; hardly moving gaits are still at its start.
+double PitEdge(const engine::EngineState& start, const Disturbance& disturbance) {
+  return std::max(start.world.qpos[0] + disturbance.pit_ahead_m, terrain::kGroundAtStartM);
+}
+
+}  // namespace
+
 std::string PitTrack(const engine::EngineState& start, const Disturbance& disturbance) {
-  const double near_m = start.world.qpos[0] + disturbance.pit_ahead_m;
-  return R"({"version": 1, "name": "pit", "segments": [{"length_m": )" + std::to_string(near_m) +
-         R"(}, {"length_m": )" + std::to_string(disturbance.pit_m) +
-         R"(, "pit": true}, {"length_m": 1000}]})";
+  return R"({"version": 1, "name": "pit", "segments": [{"length_m": )" +
+         std::to_string(PitEdge(start, disturbance)) + R"(}, {"length_m": )" +
+         std::to_string(disturbance.pit_m) + R"(, "pit": true}, {"length_m": 1000}]})";
 }
 
 TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
@@ -195,7 +217,7 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
   inputs.push_number = start.inputs.push_number;
   inputs.direct_command.turn_per_step_rad = disturbance.turn_rad;
   inputs.direct_command.height_m = disturbance.height_m;
-  const double near_m = start.world.qpos[0] + disturbance.pit_ahead_m;
+  const double near_m = PitEdge(start, disturbance);
 
   engine.Restore(start);
   GaitMeter meter(task);

@@ -63,6 +63,10 @@ struct TrialResult {
 
 inline constexpr double kTrialS = 5;
 
+/// A usage error that names the limit when a speed is beyond the gait's, to which the engine would
+/// reduce it.
+Result<void> CheckSpeeds(stream::Gait gait, const std::vector<double>& speeds_mps);
+
 /// What a set of gains is tried at: its own speed and, as gains stay the same beyond the outermost
 /// sets, for these the slowest or the fastest speed of the acceptance tests.
 std::vector<Task> TasksOf(stream::Gait gait, const std::vector<double>& speeds_mps,

@@ -258,7 +258,7 @@ Result<void> Check(const Options& options) {
       return UsageError("--speeds: must increase");
     }
   }
-  return {};
+  return CheckSpeeds(stream::GaitNamed(options.gait), options.speeds_mps);
 }
 
 Result<ordered_json> RunChecked(const Options& options, const ranks::Ranks& ranks) {

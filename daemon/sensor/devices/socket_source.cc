@@ -179,8 +179,7 @@ class SocketSource::Implementation {
     if (std::exchange(connection.is_newer, true)) return;
     handlers_.on_trouble(
         "device socket: a message of a kind that this footingd does not know is ignored, and so "
-        "are "
-        "all that follow; is the sender newer?");
+        "are all that follow; is the sender newer?");
   }
 
   static void Pass(const auto& handler, std::int64_t received_ns, const auto& frame) {
@@ -191,13 +190,14 @@ class SocketSource::Implementation {
     connection.link->Charge(kAttachCost);
     connection.refused_slots.erase(attach.slot());
     if (const std::string wrong = WhatIsWrong(attach); !wrong.empty()) {
-      Refuse(connection, "cannot attach a device: " + wrong);
-      return;
+      return Refuse(connection, "cannot attach a device: " + wrong);
     }
-    if (connection.slots.size() >= kMaxSlots || connection.slots.contains(attach.slot())) {
-      Refuse(connection, "cannot attach a device: slot taken, or more than " +
-                             std::to_string(kMaxSlots) + " devices");
-      return;
+    const bool taken = connection.slots.contains(attach.slot());
+    if (taken || connection.slots.size() >= kMaxSlots) {
+      return Refuse(connection, "cannot attach a device: " +
+                                    (taken ? "slot " + std::to_string(attach.slot()) + " is taken"
+                                           : "a connection has at most " +
+                                                 std::to_string(kMaxSlots) + " devices"));
     }
     const DeviceHandle device = new_handle_();
     connection.slots[attach.slot()] = device;

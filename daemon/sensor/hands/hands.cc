@@ -48,7 +48,7 @@ std::string ProblemOf(const stream::TrackedPoint& point) {
     return std::string("the role ") + stream::Name(point.role) +
            ", must be left_hand or right_hand; other points have a joint";
   }
-  if (!IsNear(point.position_m)) return "a position that is not within 10 m";
+  if (!IsNear(point.position_m)) return "a position that is not finite or not within 10 m";
   if (!(point.confidence >= 0 && point.confidence <= 1)) {
     return "a confidence that is not from 0 to 1";
   }
@@ -84,6 +84,15 @@ std::string Problem(const stream::HandFrame& frame) {
   for (std::size_t i = 0; i < frame.points.size(); ++i) {
     const std::string problem = ProblemOf(frame.points[i]);
     if (!problem.empty()) return "point " + std::to_string(i + 1) + " has " + problem;
+    const auto same = std::find_if(
+        frame.points.begin(), frame.points.begin() + static_cast<std::ptrdiff_t>(i),
+        [&](const stream::TrackedPoint& other) {
+          return other.role == frame.points[i].role && other.joint == frame.points[i].joint;
+        });
+    if (same != frame.points.begin() + static_cast<std::ptrdiff_t>(i)) {
+      return "points " + std::to_string(same - frame.points.begin() + 1) + " and " +
+             std::to_string(i + 1) + " are of the same hand or joint";
+    }
   }
   const std::string problem = frame.tracker_pose ? ProblemOf(*frame.tracker_pose) : "";
   return problem.empty() ? "" : "it has " + problem;

@@ -18,8 +18,8 @@ inline constexpr double kMostLoadN = 10'000;
 
 /// What is wrong with a frame and what it must be, in one line; empty when it can be taken: a
 /// place within 10 m, a standard deviation in (0, 1] m along each axis (any with confidence 0),
-/// covariances that belong to them, a confidence in [0, 1], the role of a hand or a joint, 1 to 16
-/// points, an age in [0, 1] s, names of at most 64 printable characters.
+/// covariances that belong to them, a confidence in [0, 1], the role of a hand or a joint, each
+/// once, 1 to 16 points, an age in [0, 1] s, names of at most 64 printable characters.
 std::string Problem(const stream::HandFrame& frame);
 
 /// The same of a pose: 1 to 64 joints within 10 m, a centre of mass alike, parents before their

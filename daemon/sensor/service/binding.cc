@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <span>
 
+#include "common/text/lines.h"
+#include "common/text/utf8.h"
+
 namespace footing::sensor {
 namespace {
 
@@ -30,17 +33,26 @@ std::span<const DeviceRole> RolesOf(Placement placement) {
 
 }  // namespace
 
+Result<void> CheckRig(const std::string& rig) {
+  if (!rig.empty() && rig.size() <= kMaxRigBytes && text::IsPrintable(rig)) return {};
+  return UsageError("the rig's name " + text::Quoted(rig) + " must be 1 to " +
+                    std::to_string(kMaxRigBytes) + " bytes without control characters");
+}
+
 Result<Binding> ParseBinding(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos || slash == 0 || slash > kMaxRigBytes) {
-    return UsageError("role \"" + text + "\" is not of the form rig/role, e.g. main/left_hand");
+  const std::size_t slash = text.rfind('/');  // A rig's name may have one, a role's has none.
+  if (slash == std::string::npos || slash == 0) {
+    return UsageError("role " + text::Quoted(text) +
+                      " is not of the form rig/role, e.g. main/left_hand");
   }
-  const DeviceRole role = stream::RoleNamed(text.substr(slash + 1));
+  const std::string rig = text.substr(0, slash), name = text.substr(slash + 1);
+  if (const auto checked = CheckRig(rig); !checked) return checked.error();
+  const DeviceRole role = stream::RoleNamed(name);
   if (role == DeviceRole::kUnspecified) {
-    return UsageError("role \"" + text.substr(slash + 1) + "\" does not exist; there are " +
+    return UsageError("role " + text::Quoted(name) + " does not exist; there are " +
                       stream::RoleNames());
   }
-  return Binding{text.substr(0, slash), role};
+  return Binding{rig, role};
 }
 
 std::string ToText(const Binding& binding) {

@@ -17,6 +17,10 @@ struct Binding {
   bool operator==(const Binding&) const = default;
 };
 
+/// Usage error for a rig's name that is not 1 to 64 bytes of printable text: it goes to screens and
+/// files.
+Result<void> CheckRig(const std::string& rig);
+
 /// From "rig/role", e.g. "main/left_hand".
 Result<Binding> ParseBinding(const std::string& text);
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "common/result/result.h"
 #include "daemon/sensor/service/config.h"
 
 namespace footing::sensor {
@@ -16,5 +17,8 @@ struct CommandLine {
 /// the program ends with `exit_code`: help, version, --print-config, --check-config or an error,
 /// already printed.
 std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_code);
+
+/// The config of the same command line once more, with what its file has now.
+Result<Config> ReadConfigAgain(int argc, char** argv);
 
 }  // namespace footing::sensor

@@ -1,5 +1,6 @@
 #include "daemon/sensor/service/commands.h"
 
+#include <string>
 #include <utility>
 
 #include "common/wire/wire.h"
@@ -29,6 +30,15 @@ v1::CommandResult CarryOutSetup(Hub& hub, const v1::Command& command) {
                 hub.RecordSetup(record.rig(), wire::FromProto(record.item()), record.forget()));
 }
 
+Result<void> AssignRole(Hub& hub, const Config& config, const v1::AssignRole& assign) {
+  if (!v1::DeviceRole_IsValid(assign.role())) {
+    return UsageError("assign_role has the unknown role " + std::to_string(assign.role()) +
+                      "; there are " + stream::RoleNames());
+  }
+  return hub.AssignRole(assign.serial(), {assign.rig().empty() ? config.default_rig : assign.rig(),
+                                          static_cast<stream::DeviceRole>(assign.role())});
+}
+
 v1::CommandResult CarryOutAllowed(Hub& hub, const Config& config, std::uint64_t session,
                                   const v1::Command& command) {
   switch (command.action_case()) {
@@ -40,15 +50,8 @@ v1::CommandResult CarryOutAllowed(Hub& hub, const Config& config, std::uint64_t 
     case v1::Command::kSetLeds:
       return Answer(command, hub.SetLeds(command.set_leds().device(),
                                          static_cast<std::uint8_t>(command.set_leds().leds())));
-    case v1::Command::kAssignRole: {
-      const v1::AssignRole& assign = command.assign_role();
-      Binding binding = {assign.rig().empty() ? config.default_rig : assign.rig(),
-                         stream::DeviceRole::kUnspecified};
-      if (v1::DeviceRole_IsValid(assign.role())) {
-        binding.role = static_cast<stream::DeviceRole>(assign.role());
-      }
-      return Answer(command, hub.AssignRole(assign.serial(), binding));
-    }
+    case v1::Command::kAssignRole:
+      return Answer(command, AssignRole(hub, config, command.assign_role()));
     case v1::Command::kSetSphere:
       return Answer(command,
                     hub.SetSphere(command.set_sphere().device(), command.set_sphere().rgb()));

@@ -1,5 +1,6 @@
 #include "daemon/sensor/service/config.h"
 
+#include "common/monitoring/metrics_endpoint.h"
 #include "daemon/sensor/service/binding.h"
 
 namespace footing::sensor {
@@ -78,7 +79,13 @@ Result<void> Check(const Config& config) {
                         "stream:unix:PATH, or allow it with --set tcp_devices=true");
     }
   }
+  if (const auto rig = CheckRig(config.default_rig); !rig) {
+    return UsageError("config: default_rig: " + rig.error().message);
+  }
   if (const auto access = config.access.Check(); !access) return access;
+  if (!config.metrics.empty()) {
+    if (auto checked = monitoring::MetricsEndpoint::Check(config.metrics); !checked) return checked;
+  }
   if (config.plate.contact_on_n < config.plate.contact_off_n) {
     return UsageError("config: board_contact_on_n must not be below board_contact_off_n");
   }

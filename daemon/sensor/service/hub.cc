@@ -16,7 +16,11 @@ Hub::Hub(const Config& config, Ports ports)
   }
   for (const auto& [serial, text] : store_.roles()) {
     auto binding = ParseBinding(text);
-    if (!binding) continue;
+    if (!binding) {
+      ports_.log({"the stored role of " + serial + " is ignored: " + binding.error().message,
+                  serial, true});
+      continue;
+    }
     const auto configured = assigned_.find(serial);
     if (configured != assigned_.end() && configured->second != *binding) {
       ports_.log({serial + " is " + text + " by the last command, no longer " +

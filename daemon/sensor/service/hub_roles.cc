@@ -110,6 +110,9 @@ void Hub::RebuildRigs() {
 }
 
 Result<void> Hub::AssignRole(const std::string& serial, const Binding& binding) {
+  if (const auto rig = CheckRig(binding.rig); !rig) {
+    return UsageError("assign_role: " + rig.error().message);
+  }
   Device* const found = WithSerial(serial);
   if (found == nullptr) return NoDevice("no device with serial " + serial + " was seen");
   Device& device = *found;

@@ -12,6 +12,17 @@ std::string OwnAddress(const std::string& name) {
   return transport::DefaultAddress(name, true).Text();
 }
 
+transport::AccessSettings AccessOf(const Config& config) {
+  transport::AccessSettings access = config.access;
+  const bool own_state = !config.state_directory.empty() && config.state_directory != "none";
+  if (access.identity_file.empty() && own_state) {
+    access.identity_file = config.state_directory + "/identity.pem";
+  }
+  return access;
+}
+
+Result<void> CheckStart(const Config& config) { return AccessOf(config).CheckStart(config.listen); }
+
 transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
                                            const transport::ServerOptions& with_access) {
   transport::ServerOptions options = with_access;

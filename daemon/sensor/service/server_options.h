@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "common/result/result.h"
+#include "common/transport/access.h"
 #include "common/transport/server.h"
 #include "daemon/sensor/service/config.h"
 
@@ -9,6 +11,12 @@ namespace footing::sensor {
 
 /// The socket that the service manager passed under this name, or the user's own.
 std::string OwnAddress(const std::string& name);
+
+/// Who may come over TCP and TLS; a configured state_directory has the certificate, too.
+transport::AccessSettings AccessOf(const Config& config);
+
+/// What the start checks besides the config itself, without its sockets and devices.
+Result<void> CheckStart(const Config& config);
 
 /// `with_access`: who may come in.
 transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,

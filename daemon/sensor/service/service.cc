@@ -276,13 +276,8 @@ Service::Service(std::shared_ptr<Implementation> implementation)
 Service::~Service() = default;
 Result<std::unique_ptr<Service>> Service::Start(boost::asio::io_context& io, const Config& config,
                                                 const std::string& version) {
-  transport::AccessSettings access = config.access;
-  const bool own_state = !config.state_directory.empty() && config.state_directory != "none";
-  if (access.identity_file.empty() && own_state) {
-    access.identity_file = config.state_directory + "/identity.pem";
-  }
   transport::ServerOptions with_access;
-  if (const auto applied = access.Apply(with_access); !applied) return applied.error();
+  if (const auto applied = AccessOf(config).Apply(with_access); !applied) return applied.error();
   auto implementation = std::make_shared<Implementation>(io, config, version, with_access);
   if (const auto opened = implementation->Open(); !opened) return opened.error();
   implementation->Start();

@@ -5,6 +5,7 @@
 
 #include "common/cli/cli.h"
 #include "common/log/log.h"
+#include "daemon/simulation/footing_sim/service.h"
 
 namespace footing::footing_sim {
 namespace {
@@ -59,35 +60,27 @@ std::unique_ptr<CLI::App> NewParser(Given& given) {
   for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
     app->add_option(kKeyOptions[i].name, given.values[i], kKeyOptions[i].help);
   }
-  app->add_flag("--print-config", given.print, "Print the effective config and exit");
+  CLI::Option* print =
+      app->add_flag("--print-config", given.print, "Print the effective config and exit");
   app->add_flag(
-      "--origin", given.origin,
-      "With --print-config: where each value comes from, too (default, FILE:LINE, option)");
-  app->add_flag("--check-config", given.check, "Check the config and exit");
+         "--origin", given.origin,
+         "With --print-config: where each value comes from, too (default, FILE:LINE, option)")
+      ->needs(print);
+  app->add_flag("--check-config", given.check,
+                "Check the config and the files that it names, and exit");
   app->add_flag("--json", given.json, "Print the listening addresses as one JSON object");
   app->add_flag("-q,--quiet", given.quiet, "Log only warnings and errors");
   return app;
 }
 
-}  // namespace
-
-std::optional<int> ReadCommandLine(int argc, char** argv, CommandLine& line) {
-  Given given;
-  Config& config = line.config;
-  const auto app = NewParser(given);
-  if (const auto code = cli::Parse(*app, argc, argv)) return code;
-  log::Start("footing-sim", given.quiet);
-  line.json = given.json;
-
+/// `binder` is bound to `config`. An option of its own goes before the file and --set.
+Result<void> Apply(const Given& given, Config& config, config::Binder& binder) {
+  std::vector<std::string> settings = given.settings;
   for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
     const std::string key = kKeyOptions[i].key;
-    if (!given.values[i].empty()) given.settings.push_back(key + "=" + given.values[i]);
+    if (!given.values[i].empty()) settings.push_back(key + "=" + given.values[i]);
   }
-  config::Binder binder;
-  config.Bind(binder);
-  if (const auto done = binder.Apply(given.file, given.settings); !done) {
-    return cli::Report(done.error());
-  }
+  if (const auto done = binder.Apply(given.file, settings); !done) return done;
   for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
     if (!given.values[i].empty()) binder.SetOrigin(kKeyOptions[i].key, kKeyOptions[i].name);
   }
@@ -95,15 +88,39 @@ std::optional<int> ReadCommandLine(int argc, char** argv, CommandLine& line) {
     config.serving.listen = given.listen;
     binder.SetOrigin("listen", "--listen");
   }
-  if (const auto checked = Check(config); !checked) return cli::Report(checked.error());
-  if (const auto apply = CheckApply(config, given.settings); !apply) {
-    return cli::Report(apply.error());
-  }
-  if (given.print) {
+  if (const auto checked = Check(config); !checked) return checked;
+  return CheckApply(config, settings);
+}
+
+}  // namespace
+
+std::optional<int> ReadCommandLine(int argc, char** argv, CommandLine& line) {
+  Given given;
+  const auto app = NewParser(given);
+  if (const auto code = cli::Parse(*app, argc, argv)) return code;
+  log::Start("footing-sim", given.quiet);
+  line.json = given.json;
+  config::Binder binder;
+  line.config.Bind(binder);
+  auto done = Apply(given, line.config, binder);
+  if (done && given.print) {
     std::cout << (given.origin ? binder.PrintOrigins() : binder.Print()) << std::endl;
   }
+  if (done && given.check) done = CheckService(line.config);
+  if (!done) return cli::Report(done.error());
   if (given.print || given.check) return 0;
   return std::nullopt;
+}
+
+Result<Config> ReadConfigAgain(int argc, char** argv) {
+  Given given;
+  const auto app = NewParser(given);
+  if (cli::Parse(*app, argc, argv)) return Failure("the command line cannot be read again");
+  Config config;
+  config::Binder binder;
+  config.Bind(binder);
+  if (const auto done = Apply(given, config, binder); !done) return done.error();
+  return config;
 }
 
 }  // namespace footing::footing_sim

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "common/result/result.h"
 #include "daemon/simulation/footing_sim/config.h"
 
 namespace footing::footing_sim {
@@ -15,5 +16,8 @@ struct CommandLine {
 /// the program should end now: after --help, --print-config or --check-config, or for an error that
 /// has been printed.
 std::optional<int> ReadCommandLine(int argc, char** argv, CommandLine& line);
+
+/// The config of the same command line once more, with what its file has now.
+Result<Config> ReadConfigAgain(int argc, char** argv);
 
 }  // namespace footing::footing_sim

@@ -1,5 +1,6 @@
 #include "daemon/simulation/footing_sim/config.h"
 
+#include "common/monitoring/metrics_endpoint.h"
 #include "common/transport/address_or_default.h"
 
 namespace footing::footing_sim {
@@ -18,6 +19,10 @@ Result<void> Check(const Config& config) {
   }
   const auto sensor = transport::AddressOrDefault(config.serving.sensor, "sensor");
   if (!sensor) return UsageError("--sensor: " + sensor.error().message);
+  if (!config.serving.metrics.empty()) {
+    const auto metrics = monitoring::MetricsEndpoint::Check(config.serving.metrics);
+    if (!metrics) return metrics;
+  }
   if (const auto checked = gait_service::Check(config.gait); !checked) return checked;
   return pose_service::Check(config.pose);
 }

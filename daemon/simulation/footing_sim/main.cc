@@ -1,6 +1,8 @@
 #include <boost/asio/io_context.hpp>
+#include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "common/cli/cli.h"
@@ -25,21 +27,19 @@ int main(int argc, char** argv) {
   service_manager::Notifier notifier(io, served->stuck);
   service_manager::ServiceSignals::Handlers handlers;
   handlers.stop = [&](int signal, std::function<void()> done) {
+    log::Info(std::string("stopped by SIG") + sigabbrev_np(signal));
     notifier.Stopping();
     served->stop(cli::StopReason("footing-sim", signal), std::move(done));
   };
   handlers.reload = [&] {
-    footing_sim::CommandLine again;
-    if (footing_sim::ReadCommandLine(argc, argv, again)) {
-      return log::Warning("config not reloaded: the one in force stays");
-    }
-    const footing_sim::Config& wanted = again.config;
-    const auto changed_files = served->reload(wanted.serving);
-    if (!changed_files) {
-      return log::Warning("config not reloaded: the one in force stays: " +
-                          changed_files.error().message);
-    }
-    config = footing_sim::Reloaded(config, wanted, *changed_files, log::Info);
+    const auto keep = [](const Error& error) {
+      log::Warning("config not reloaded: the one in force stays: " + error.message);
+    };
+    const auto wanted = footing_sim::ReadConfigAgain(argc, argv);
+    if (!wanted) return keep(wanted.error());
+    const auto changed_files = served->reload(wanted->serving);
+    if (!changed_files) return keep(changed_files.error());
+    config = footing_sim::Reloaded(config, *wanted, *changed_files, log::Info);
   };
   const service_manager::ServiceSignals signals(io, std::move(handlers));
   // Whoever reads this may send a signal at once.

@@ -14,4 +14,8 @@ namespace footing::footing_sim {
 Result<serving::Served> StartService(boost::asio::io_context& io, const Config& config,
                                      const std::string& version);
 
+/// What StartService checks besides the config itself: reads all files and builds the engine, and
+/// opens no socket.
+Result<void> CheckService(const Config& config);
+
 }  // namespace footing::footing_sim

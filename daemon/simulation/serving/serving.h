@@ -201,4 +201,13 @@ Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
                 [serving] { return serving->Stuck(); }, serving->listening_on()};
 }
 
+/// What StartServing checks besides the config itself, without its sockets and its thread.
+template <typename Line, typename MakeLine>
+Result<void> CheckServing(const Config& config, const MakeLine& make_line) {
+  if (auto access = config.access.CheckStart(config.listen); !access) return access;
+  constexpr int kNobodyToWake = -1;
+  const Result<std::unique_ptr<Line>> line = make_line(kNobodyToWake);
+  return line ? Result<void>() : line.error();
+}
+
 }  // namespace footing::serving

@@ -9,6 +9,9 @@
 /// Tracks as data: a ribbon of segments, 4 m wide in the paper (section 8.2).
 namespace footing::terrain {
 
+/// A character starts, and is put back, at the start of a track: so much ground is under it.
+inline constexpr double kGroundAtStartM = 1;
+
 /// Reads a track. The file is one object:
 ///   version   1
 ///   name      text; comment   text, ignored
@@ -25,9 +28,12 @@ namespace footing::terrain {
 ///             due: the gait `after`, within 15 m by default; `before` is the gait up to the line
 ///   segments  1 to 1000 objects {length_m (0, 10000], slope_deg [-30, 30], curve_deg [-90, 90],
 ///             step_m [-0.5, 0.5], pit true or false, repeat}; all but the length default to
-///             nothing, repeat to 1.
-/// The track starts at the origin along x. curve_deg turns the heading and step_m raises the
-/// ground at the segment's start; positive is left and up. `origin` names the file in errors.
+///             nothing, repeat to 1. The first pit begins kGroundAtStartM or more from the start; a
+///             pit has no curve.
+/// The start line is on ground, kGroundAtStartM or more before the end. A track that neither is
+/// open nor grows is long enough for its finish line, unless finish_m is 0 or another place. The
+/// track starts at the origin along x. curve_deg turns the heading and step_m raises the ground at
+/// the segment's start; positive is left and up. `origin` names the file in errors.
 Result<stream::Track> ParseTrack(const std::string& text, const std::string& origin);
 
 /// True when segments are added to the track while a character is on it.

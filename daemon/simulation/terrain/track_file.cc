@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/text/json_text.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "daemon/simulation/terrain/track.h"
 
@@ -17,6 +18,8 @@ constexpr std::size_t kMaxTasks = 16;
 constexpr double kRunOutM = 5;
 constexpr double kStartLineM = 1;
 constexpr double kTaskWithinM = 15;
+/// Lengths of many segments add up to within this.
+constexpr double kRoundingM = 1e-9;
 
 /// Reads one JSON object and remembers the first thing wrong.
 class Fields {
@@ -76,6 +79,22 @@ class Fields {
   std::string error_;
 };
 
+/// The character stands before the first pit, and lands on the far edge of each.
+Result<void> CheckPit(const std::string& where, double curve_rad, const stream::Track& track) {
+  const bool first = std::none_of(track.segments.begin(), track.segments.end(),
+                                  [](const auto& segment) { return segment.pit; });
+  const double ground_m = track.segments.empty() ? 0 : LengthOf(track);
+  if (first && ground_m < kGroundAtStartM - kRoundingM) {
+    return InvalidData(where + ": the pit begins " + text::Fixed(ground_m, 2) +
+                       " m from the start of the track, where the character stands; put at least " +
+                       text::Shortest(kGroundAtStartM) + " m of ground before it");
+  }
+  if (curve_rad != 0) {
+    return InvalidData(where + ": a pit has no curve_deg; put the curve before or after it");
+  }
+  return {};
+}
+
 /// One object of the file: as many segments as it repeats.
 Result<void> AppendFrom(const json& object, const std::string& where, double width_m,
                         stream::Track& track) {
@@ -90,9 +109,13 @@ Result<void> AppendFrom(const json& object, const std::string& where, double wid
     segment.length_m = fields.Number("length_m", 0, 0.01, 10000);
     if (segment.length_m == 0) fields.Fail("length_m is missing");
     segment.slope_rad = DegreesToRadians(fields.Number("slope_deg", 0, -30, 30));
-    segment.heading_rad += DegreesToRadians(fields.Number("curve_deg", 0, -90, 90));
+    const double curve_rad = DegreesToRadians(fields.Number("curve_deg", 0, -90, 90));
+    segment.heading_rad += curve_rad;
     segment.start_m.z() += fields.Number("step_m", 0, -0.5, 0.5);
     segment.pit = fields.Flag("pit", false);
+    if (segment.pit) {
+      if (auto checked = CheckPit(where, curve_rad, track); !checked) return checked;
+    }
     track.segments.push_back(segment);
   }
   return fields.Done();
@@ -166,11 +189,30 @@ Result<void> ReadMark(const json& root, const std::string& origin, stream::Track
 void ReadLines(Fields& fields, stream::Track& track) {
   const double length_m = LengthOf(track);
   const bool ends = !track.open && !track.extendable && !track.endless;
-  track.start_m = fields.Number("start_m", std::min(kStartLineM, length_m / 2), 0, length_m);
-  const double finish_m = ends && length_m > track.start_m + kRunOutM ? length_m - kRunOutM : 0;
-  track.finish_m = fields.Number("finish_m", finish_m, 0, length_m);
-  if (track.finish_m > 0 && track.finish_m <= track.start_m) {
-    fields.Fail("finish_m must be beyond start_m");
+  const std::string length = "the track is " + text::Fixed(length_m, 2) + " m long";
+  track.start_m = fields.Number("start_m", kStartLineM, 0, length_m);
+  if (length_m < track.start_m + kGroundAtStartM - kRoundingM) {
+    fields.Fail(length + ", its start line is at " + text::Shortest(track.start_m) +
+                " m; at least " + text::Shortest(kGroundAtStartM) + " m of track must follow it");
+  }
+  const auto start = static_cast<std::size_t>(PlaceAt(track, track.start_m).segment);
+  if (track.segments[start].pit) {
+    fields.Fail("start_m is " + text::Shortest(track.start_m) +
+                ", in a pit; put the start line on the ground");
+  }
+  const double finish_m = fields.Number("finish_m", -1, 0, length_m);
+  if (finish_m >= 0 || !ends) {
+    track.finish_m = std::max(finish_m, 0.0);
+    if (track.finish_m > 0 && track.finish_m <= track.start_m) {
+      fields.Fail("finish_m must be beyond start_m");
+    }
+    return;
+  }
+  track.finish_m = length_m - kRunOutM;
+  if (track.finish_m <= track.start_m + kRoundingM) {
+    fields.Fail(length + ", too short for a finish line " + text::Shortest(kRunOutM) +
+                " m before its end; make it longer than " +
+                text::Shortest(track.start_m + kRunOutM) + " m, or set finish_m");
   }
 }
 

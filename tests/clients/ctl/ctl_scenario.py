@@ -4,6 +4,7 @@ Usage: ctl_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 """
 import json
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -162,6 +163,16 @@ def check_refusals(console):
     console.refused(3, "tare", "all", says="no board")
     console.refused(2, "tare", "left_hand", says="is not a Balance Board")
     console.refused(2, "pair", "joycon", says="wiimote, board or move")
+    console.refused(1, "assign", "left_hand", "r" * 65 + "/head", says="must be 1 to 64 bytes")
+    console.refused(1, "assign", "left_hand", "a\x1b[2J/head", says="assign_role.rig has control characters")
+    console.refused(2, "lease", says="add --of footingd")
+
+
+def check_other_side(stage):
+    """TLS to a port that does not speak it: not the server that is missing."""
+    tcp = re.search(r"listening on tcp:(\S+)", log_of(stage, "footingd"))[1]
+    done = stage.run("footing-ctl", "--connect", f"tls:{tcp}", "devices")
+    assert done.returncode == 3 and "does not speak TLS" in done.stderr and "start it" not in done.stderr, done
 
 
 def make_host(root):
@@ -222,7 +233,8 @@ def main():
         check_without_footingd(stage)
         check_help(stage)
         check_page(stage)
-        stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+        stage.start("footingd", "--listen", stage.sensor, "--listen", "tcp:127.0.0.1:0", "--source",
+                    f"stream:{stage.devices}")
         stage.wait_for_socket(stage.sensor)
         stage.wait_for_socket(stage.devices)
         console = Console(stage)
@@ -234,6 +246,7 @@ def main():
         check_rumble(stage, console, devices)
         check_assign(console, devices)
         check_refusals(console)
+        check_other_side(stage)
         check_doctor(stage, console)
         check_pair(stage, console)
         print(f"all said and done in {time.monotonic() - started_s:.1f} s")

@@ -73,7 +73,8 @@ inline std::vector<Case> Cases() {
          f.footingd_reached = false;
          f.daemons.clear();
        }},
-      {"second_daemon", S::kError, "kill 400", [](Facts& f) { f.daemons[400] = f.user; }},
+      {"second_daemon", S::kError, "kill 321 400, without",
+       [](Facts& f) { f.daemons[400] = f.user; }},
       {"other_version", S::kNote, "restart", [](Facts& f) { f.footingd_version = "0.0.9"; }},
       {"node_without_permission", S::kError, "70-footing.rules",
        [](Facts& f) {

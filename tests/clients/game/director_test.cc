@@ -158,6 +158,26 @@ TEST(Director, WaitsForBothPlayersAndSaysForWhom) {
   EXPECT_TRUE(world.started.empty());
 }
 
+TEST(Director, SaysInARoundWhoseDevicesAreSilent) {
+  World world;
+  world.RunUntil(GamePhase::kRound, 5);
+  world.RunFor(1);
+  EXPECT_EQ(world.director.game().note, "");
+  world.frame.runner_silent = true;
+  world.RunFor(0.1);
+  EXPECT_EQ(world.director.game().phase, GamePhase::kRound);
+  EXPECT_EQ(world.director.game().note, "the runner's controllers are silent");
+  world.hand.known = false;
+  world.RunFor(0.1);
+  EXPECT_EQ(world.director.game().note,
+            "the builder's Wiimote is silent: level ground; the runner's controllers are silent");
+  world.hand.known = true;
+  world.frame.runner_silent = false;
+  world.frame.commanded = false;  // footingd itself.
+  world.RunFor(0.1);
+  EXPECT_EQ(world.director.game().note, "the runner's controllers are silent");
+}
+
 TEST(Director, LaysLevelGroundWhileTheBuildersDeviceIsSilent) {
   World world;
   world.RunUntil(GamePhase::kRound, 5);

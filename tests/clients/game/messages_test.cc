@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "common/stream/user_interface.h"
+
 namespace footing::game {
 namespace {
 
@@ -79,6 +81,22 @@ TEST(Messages, NeverTakeNumbersThatAreNotFinite) {
   Hand hand;
   EXPECT_TRUE(Take(tick, device, hand));
   EXPECT_EQ(hand.roll_rad, 0);
+}
+
+TEST(Messages, TakeTheRunnersSilenceFromTheInterface) {
+  v1::Tick tick;
+  v1::Character& character = *tick.mutable_characters()->add_characters();
+  tick.mutable_characters()->set_time_s(3);
+  character.mutable_gait()->set_commanded_by_stream(true);
+  character.mutable_interface()->set_activity(v1::ACTIVITY_ALTERNATE);
+  EXPECT_EQ(FrameOf(tick).time_s, 3);
+  EXPECT_TRUE(FrameOf(tick).commanded);
+  EXPECT_FALSE(FrameOf(tick).runner_silent);
+  character.mutable_interface()->set_missing_roles(stream::RoleBit(stream::DeviceRole::kHead));
+  EXPECT_TRUE(FrameOf(tick).runner_silent);
+  character.mutable_interface()->set_missing_roles(0);
+  character.mutable_interface()->set_activity(v1::ACTIVITY_ABSENT);
+  EXPECT_TRUE(FrameOf(tick).runner_silent);
 }
 
 TEST(Messages, AppendEveryPropertyOfAPiece) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -40,18 +41,38 @@ motion::C3d ThroughAFile(const motion::C3d& c3d) {
 }
 
 TEST(C3dBody, ItsPointsAreTheJoints) {
-  const motion::C3d read = ThroughAFile(ToC3d(Column(3), std::vector<FootForces>(3)));
+  const motion::C3d read =
+      ThroughAFile(ToC3d(Column(3), std::vector<bool>(3, true), std::vector<FootForces>(3)));
   EXPECT_EQ(read.points.names, (std::vector<std::string>{"root", "top"}));
   EXPECT_EQ(read.y_screen, "+Z");
   EXPECT_LT((read.points.p[0].col(2) - Vector3d(0.02, 0.2, 1)).norm(), 1e-6);
   EXPECT_LT((read.points.p[1].col(2) - Vector3d(0.02, 0.2, 1.5)).norm(), 1e-6);
 }
 
+TEST(C3dBody, APoseThatIsNotValidHasInvalidPoints) {
+  const motion::C3d c3d = ToC3d(Column(3), {true, false, true}, std::vector<FootForces>(3));
+  const auto bytes = motion::WriteC3d(c3d);
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message;
+  // After the parameters: per frame two points of four floats, then twelve analog values.
+  const std::size_t data = 512 * (static_cast<std::uint8_t>((*bytes)[16]) - 1U);
+  for (std::size_t frame = 0; frame < 3; ++frame) {
+    for (std::size_t point = 0; point < 2; ++point) {
+      float residual = 0;
+      std::memcpy(&residual, bytes->data() + data + 80 * frame + 16 * point + 12, 4);
+      EXPECT_EQ(residual, frame == 1 ? -1 : 0) << frame << " " << point;
+    }
+  }
+  const motion::C3d read = ThroughAFile(c3d);
+  EXPECT_TRUE(motion::Seen(read.points.p[0].col(0)));
+  EXPECT_FALSE(motion::Seen(read.points.p[0].col(1)));
+  EXPECT_FALSE(motion::Seen(read.points.p[1].col(1)));
+}
+
 TEST(C3dBody, ItsPlatesCarryTheFeet) {
   std::vector<FootForces> forces(3);
   forces[1] = {{{300, {0.13, 0.21, 0}}, {450, {0.05, -0.18, 0}}}};
   forces[2] = {{{0, {9, 9, 0}}, {700, {-0.02, -0.2, 0}}}};  // The left foot is in the air.
-  const motion::C3d read = ThroughAFile(ToC3d(Column(3), forces));
+  const motion::C3d read = ThroughAFile(ToC3d(Column(3), std::vector<bool>(3, true), forces));
   EXPECT_EQ(read.analog_names[2], "Fz1");
   const auto plates = motion::ToGroundForces(read, "x.c3d");
   ASSERT_TRUE(plates.ok()) << plates.error().message;

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "clients/log/motion_gatherer.h"
 #include "common/body/kinematics.h"
@@ -33,6 +35,7 @@ v1::CharacterFrame FrameAt(double time_s, double bend_rad, bool calibrated = tru
   v1::CharacterFrame frame;
   frame.set_time_s(time_s);
   v1::Character& character = *frame.add_characters();
+  character.set_valid(calibrated);
   character.mutable_body()->set_calibrated(calibrated);
   character.mutable_body()->set_subject("p07");
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
@@ -135,6 +138,68 @@ TEST(MotionGatherer, TheForcesStandBesideTheFramesOfTheMotion) {
   EXPECT_EQ((*forces)[1][1].cop_W, Eigen::Vector3d(0.1, 0.2, 0.05));
 }
 
+/// A frame whose feet carry 300 and 400 N.
+v1::CharacterFrame Standing(double time_s, bool left_measured, bool right_measured) {
+  v1::CharacterFrame frame = FrameAt(time_s, 0);
+  v1::BodyState& body = *frame.mutable_characters(0)->mutable_body();
+  for (const double load_n : {300.0, 400.0}) {
+    v1::BodyFoot& foot = *body.add_feet();
+    foot.set_load_n(load_n);
+    foot.set_cop_valid(true);
+  }
+  body.add_feet_told(left_measured);
+  body.add_feet_told(right_measured);
+  return frame;
+}
+
+TEST(MotionGatherer, WithoutBothBoardsTheLoadsAreOldAndNoForces) {
+  MotionGatherer gatherer(Chain());
+  gatherer.Add(Standing(0, true, true));
+  gatherer.Add(Standing(0.1, false, true));
+  gatherer.Add(Standing(0.2, false, false));
+  v1::CharacterFrame insoles = Standing(0.3, false, true);
+  insoles.mutable_characters(0)->mutable_body()->set_contact_source("insoles");
+  gatherer.Add(insoles);
+  const auto forces = gatherer.Forces();
+  ASSERT_TRUE(forces.ok()) << forces.error().message;
+  ASSERT_EQ(forces->size(), 4u);
+  const std::vector<std::array<double, 2>> expected_n{{300, 400}, {0, 0}, {0, 0}, {0, 400}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      EXPECT_EQ((*forces)[i][side].load_n, expected_n[i][side]) << i << " " << side;
+    }
+  }
+}
+
+TEST(MotionGatherer, FramesAreValidAsTheEngineReportedThem) {
+  MotionGatherer gatherer(Chain());
+  for (const int i : {0, 1, 2, 4, 5}) {
+    v1::CharacterFrame frame = FrameAt(i / 120.0, 0.1 * i);
+    frame.mutable_characters(0)->set_valid(i != 2);
+    gatherer.Add(frame);
+  }
+  const auto valid = gatherer.Valid();
+  ASSERT_TRUE(valid.ok()) << valid.error().message;
+  // Frame 3 is missing and repeats frame 2.
+  EXPECT_EQ(*valid, (std::vector<bool>{true, true, false, false, true, true}));
+}
+
+TEST(JointPlaces, HaveAGapWhereThePoseIsNotValid) {
+  MotionGatherer gatherer(Chain());
+  for (int i = 0; i < 3; ++i) gatherer.Add(FrameAt(i / 120.0, 0));
+  const auto motion = gatherer.Finish();
+  ASSERT_TRUE(motion.ok()) << motion.error().message;
+  const std::string text = motion::WriteTrc(JointPlaces(*motion, {true, false, true}), "a.trc");
+  // Nine empty fields, and the tab after the last one.
+  EXPECT_NE(text.find("2\t0.008333" + std::string(10, '\t') + "\n"), std::string::npos) << text;
+  const auto read = motion::ParseTrc(text, "a.trc");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_EQ(read->frames(), 3);
+  EXPECT_TRUE(motion::Seen(read->p[2].col(0)));
+  for (const auto& track : read->p) EXPECT_FALSE(motion::Seen(track.col(1)));
+  EXPECT_EQ(motion::WriteTrc(*read, "a.trc"), text);
+}
+
 TEST(MotionGatherer, WhatCameBeforeTheTPoseIsLeftOut) {
   MotionGatherer gatherer(Chain());
   for (int i = 0; i < 5; ++i) gatherer.Add(FrameAt(i / 120.0, 0, false));
@@ -164,7 +229,8 @@ TEST(JointPlaces, AreTheLinksOfEveryFrameInTheAxesOfOpenSim) {
   const auto motion = gatherer.Finish();
   ASSERT_TRUE(motion.ok()) << motion.error().message;
   // Through the file and back: places in mm with decimals.
-  const auto read = motion::ParseTrc(motion::WriteTrc(JointPlaces(*motion), "a.trc"), "a.trc");
+  const auto read = motion::ParseTrc(
+      motion::WriteTrc(JointPlaces(*motion, std::vector<bool>(60, true)), "a.trc"), "a.trc");
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(read->names, (std::vector<std::string>{"root", "spine", "top"}));
   EXPECT_EQ(read->start_s, 0);
@@ -196,7 +262,11 @@ TEST(ExportBodies, SaysWhereInTheRecordingItsFilesBegin) {
   *skeletons.add_skeletons() = Chain();
   write("/footing-sim/skeletons", skeletons, 5);
   write("/footing-sim/characters", FrameAt(0.5, 0, false), 6);
-  for (int i = 0; i < 4; ++i) write("/footing-sim/characters", FrameAt(2 + 0.25 * i, 0), 7.5 + i);
+  for (int i = 0; i < 4; ++i) {
+    v1::CharacterFrame frame = FrameAt(2 + 0.25 * i, 0);
+    frame.mutable_characters(0)->set_valid(i < 3);
+    write("/footing-sim/characters", frame, 7.5 + i);
+  }
   ASSERT_TRUE(writer->Finish());
   for (const auto& [format, name] : {std::pair{BodyFormat::kBvh, "pose_1_p07.bvh"},
                                      std::pair{BodyFormat::kTrc, "pose_1_p07.trc"},
@@ -206,6 +276,7 @@ TEST(ExportBodies, SaysWhereInTheRecordingItsFilesBegin) {
     ASSERT_EQ(exported->size(), 1U);
     EXPECT_EQ((*exported)[0].path, folder.Path("out") + "/" + name);
     EXPECT_EQ((*exported)[0].frames, 4U);
+    EXPECT_EQ((*exported)[0].invalid_frames, 1U);
     EXPECT_NEAR((*exported)[0].begin_s, 2.5, 1e-9);
   }
   // A chain has no knees.

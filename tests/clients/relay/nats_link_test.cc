@@ -88,10 +88,13 @@ TEST_F(NatsLinkTest, WhatIsSubscribedWhileTheServerGreetsIsNotForgotten) {
 TEST_F(NatsLinkTest, SubscriptionsLastOverAReconnection) {
   Start();
   link_->Subscribe("a");
+  EXPECT_FALSE(link_->Publish("x", "y"));  // Not lost: no server was there yet.
+  EXPECT_EQ(link_->dropped(), 0u);
   Greet();
   socket_->close();
   ASSERT_TRUE(RunUntil([&] { return !downs_.empty(); }));
   EXPECT_FALSE(link_->Publish("x", "y"));
+  EXPECT_EQ(link_->dropped(), 1u);
   Accept();
   Say("INFO {}\r\n");
   EXPECT_TRUE(Gets("SUB a 1\r\n"));

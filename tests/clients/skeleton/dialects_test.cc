@@ -7,21 +7,13 @@
 
 #include "clients/skeleton/dialects/decoder.h"
 #include "tests/clients/skeleton/clips.h"
+#include "tests/clients/skeleton/send.h"
 
 namespace footing::skeleton {
 namespace {
 
 constexpr Dialect kWritten[] = {Dialect::kSensebloom, Dialect::kQuartz, Dialect::kZillode,
                                 Dialect::kKinectSdk2, Dialect::kFooting};
-
-void Send(Decoder& decoder, const std::vector<std::string>& packets, std::int64_t now_ns,
-          std::vector<Decoded>& complete) {
-  osc::Packet packet;
-  for (const std::string& bytes : packets) {
-    ASSERT_TRUE(osc::Read(osc::AsBytes(bytes), packet));
-    decoder.Take(packet, now_ns, complete);
-  }
-}
 
 /// What the dialect can say of a confidence.
 double Said(Dialect dialect, double confidence) {
@@ -250,50 +242,26 @@ TEST(Decoder, SaysWhatItDoesNotUnderstand) {
   EXPECT_EQ(decoder.counts().unknown, 3u);
 }
 
-TEST(Vmc, PutsBonesIntoTheirChain) {
-  // A person who looks along Unity's z: right is x. The left upper arm is turned by 90 degrees
-  // about z, so the forearm, 0.3 m along its own -x, hangs down.
-  Decoder decoder({});
-  std::vector<Decoded> complete;
-  std::vector<std::string> messages;
-  const auto bone = [&](std::string_view name, float x, float y, float z, float qz = 0,
-                        float qw = 1) {
-    const osc::Argument arguments[] = {name, x, y, z, 0.f, 0.f, qz, qw};
-    messages.push_back(osc::WriteMessage("/VMC/Ext/Bone/Pos", arguments));
-  };
-  const float half = std::sqrt(0.5f);
-  bone("Hips", 0, 1, 0);
-  bone("Spine", 0, 0.2f, 0);
-  bone("Neck", 0, 0.3f, 0);
-  bone("Head", 0, 0.1f, 0.05f);
-  bone("LeftUpperArm", -0.2f, 0.25f, 0, half, half);
-  bone("LeftLowerArm", -0.3f, 0, 0);
-  bone("LeftHand", -0.25f, 0, 0);
-  bone("RightUpperArm", 0.2f, 0.25f, 0);
-  bone("RightLowerArm", 0.3f, 0, 0);
-  bone("RightHand", 0.25f, 0, 0);
-  for (const char* const side : {"Left", "Right"}) {
-    bone(std::string(side) + "UpperLeg", side[0] == 'L' ? -0.1f : 0.1f, 0, 0);
-    bone(std::string(side) + "LowerLeg", 0, -0.45f, 0);
-    bone(std::string(side) + "Foot", 0, -0.45f, 0);
+TEST(WithSides, UndoesEachWayInWhichASenderMayMixThem) {
+  Skeleton sent = Standing();
+  sent[Joint::kLeftHand].p_K_m.y() = 0.6;  // The left one is raised.
+  for (const bool mirrored : {false, true}) {
+    for (const bool swap_sides : {false, true}) {
+      const DialectOptions options{.mirrored = mirrored, .swap_sides = swap_sides};
+      Decoder decoder(options);
+      std::vector<Decoded> complete;
+      Send(decoder, Encode(Dialect::kFooting, options, sent), 1, complete);
+      ASSERT_EQ(complete.size(), 1u);
+      for (std::size_t i = 0; i < kJoints; ++i) {
+        EXPECT_LT((complete[0].skeleton.joints[i].p_K_m - sent.joints[i].p_K_m).norm(), 1e-6);
+      }
+    }
   }
-  const osc::Argument time[] = {1.f};
-  messages.push_back(osc::WriteMessage("/VMC/Ext/T", time));
-  Send(decoder, {osc::WriteBundle({}, messages)}, 1, complete);
-  ASSERT_EQ(complete.size(), 1u);
-  const Skeleton& skeleton = complete[0].skeleton;
-  const auto expect = [&](Joint joint, const Eigen::Vector3d& unity) {
-    // The camera is in front: what is away from it is behind the person.
-    const Eigen::Vector3d p_K(unity.x(), unity.y(), -unity.z());
-    EXPECT_LT((skeleton[joint].p_K_m - p_K).norm(), 1e-6) << kJointNames[Index(joint)];
-  };
-  expect(Joint::kHead, {0, 1.6, 0.05});
-  expect(Joint::kLeftShoulder, {-0.2, 1.45, 0});
-  expect(Joint::kLeftElbow, {-0.2, 1.15, 0});
-  expect(Joint::kLeftHand, {-0.2, 0.9, 0});
-  expect(Joint::kRightHand, {0.75, 1.45, 0});
-  expect(Joint::kRightFoot, {0.1, 0.1, 0});
-  EXPECT_FALSE(skeleton[Joint::kTorso].present()) << "no Chest was sent";
+  const Skeleton names = WithSides({.swap_sides = true}, sent);
+  EXPECT_EQ(names[Joint::kRightHand].p_K_m, sent[Joint::kLeftHand].p_K_m);
+  const Skeleton picture = WithSides({.mirrored = true, .swap_sides = true}, sent);
+  EXPECT_EQ(picture[Joint::kLeftHand].p_K_m,
+            sent[Joint::kLeftHand].p_K_m.cwiseProduct(Eigen::Vector3d(-1, 1, 1)));
 }
 
 }  // namespace

@@ -57,18 +57,28 @@ TEST(PersonGate, ReportsAWrongScaleInWords) {
   EXPECT_EQ(gated.fault, Fault::kNormalised);
 }
 
-TEST(PersonGate, ReportsAMirrorImageAndAPersonUpsideDown) {
-  PersonGate mirror;
-  EXPECT_EQ(
-      Play(mirror, 60,
-           [](Skeleton& skeleton) {
-             // The names are swapped: a mirror image, seen from the same place.
-             for (const Joint left : {Joint::kLeftShoulder, Joint::kLeftElbow, Joint::kLeftHand,
-                                      Joint::kLeftHip, Joint::kLeftKnee, Joint::kLeftFoot})
-               std::swap(skeleton[left], skeleton[Mirrored(left)]);
-           })
-          .fault,
-      Fault::kMirrored);
+TEST(PersonGate, ReportsSwappedSidesAndAPersonUpsideDown) {
+  PersonGate names, picture, right;
+  const auto swap = [](Skeleton& skeleton) { skeleton = SwappedSides(skeleton); };
+  EXPECT_EQ(Play(names, 60, swap).fault, Fault::kSwapped);
+  // The picture is mirrored and the names are not.
+  const auto mirror = [](Skeleton& skeleton) { skeleton = SwappedSides(MirrorImage(skeleton)); };
+  EXPECT_EQ(Play(picture, 60, mirror).fault, Fault::kSwapped);
+  // What the advice names is the remedy, while a mirror image of both leaves the fault.
+  EXPECT_NE(Advice(Fault::kSwapped).find("--swap-sides"), std::string::npos);
+  EXPECT_EQ(Play(right, 60,
+                 [](Skeleton& skeleton) {
+                   skeleton = WithSides({.swap_sides = true}, SwappedSides(skeleton));
+                 })
+                .fault,
+            Fault::kNone);
+  PersonGate still;
+  EXPECT_EQ(Play(still, 60,
+                 [](Skeleton& skeleton) {
+                   skeleton = WithSides({.mirrored = true}, SwappedSides(skeleton));
+                 })
+                .fault,
+            Fault::kSwapped);
   PersonGate head_down;
   EXPECT_EQ(Play(head_down, 60,
                  [](Skeleton& skeleton) {
@@ -76,6 +86,30 @@ TEST(PersonGate, ReportsAMirrorImageAndAPersonUpsideDown) {
                  })
                 .fault,
             Fault::kUpsideDown);
+}
+
+TEST(PersonGate, ReportsABackThatACameraTakesForAFront) {
+  PersonGate gate;
+  const Gated gated = Play(gate, 60, [](Skeleton& skeleton) {
+    for (JointReading& joint : skeleton.joints) {
+      joint.p_K_m.x() *= -1;  // Half a turn about the person's middle.
+      joint.p_K_m.z() = 5 - joint.p_K_m.z();
+    }
+    skeleton = SwappedSides(skeleton);
+  });
+  EXPECT_EQ(gated.fault, Fault::kTurned);
+}
+
+TEST(PersonGate, ReportsAPersonOfHalfSize) {
+  const auto scaled = [](double factor) {
+    PersonGate gate;
+    return Play(gate, 40, [factor](Skeleton& skeleton) {
+      for (JointReading& joint : skeleton.joints) joint.p_K_m *= factor;
+    });
+  };
+  EXPECT_EQ(scaled(0.5).fault, Fault::kShort);
+  EXPECT_NE(Advice(Fault::kShort).find("--factor"), std::string::npos);
+  EXPECT_EQ(scaled(0.65).fault, Fault::kNone) << "a child";
 }
 
 TEST(PersonGate, RecoversWhenTheFaultIsOver) {
@@ -140,7 +174,7 @@ TEST(PersonGate, TakesRealPeopleAndFindsTheirMirrorImages) {
       Skeleton swapped = frame.skeleton;
       for (std::size_t i = 0; i < kJoints; ++i)
         swapped.joints[i] = frame.skeleton[Mirrored(static_cast<Joint>(i))];
-      mirrored = mirrored || mirror.Advance(swapped, frame.time_ns).fault == Fault::kMirrored;
+      mirrored = mirrored || mirror.Advance(swapped, frame.time_ns).fault == Fault::kSwapped;
     }
     EXPECT_EQ(faults, 0u);
     EXPECT_TRUE(mirrored);

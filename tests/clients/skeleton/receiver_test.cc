@@ -72,6 +72,8 @@ TEST(Receiver, CountsWhatASenderSends) {
   EXPECT_EQ((*sent)["packets"], 50);
   EXPECT_EQ(received->statistics["packets"], 50);
   EXPECT_EQ(received->statistics["skeletons"], 50);
+  EXPECT_EQ(received->statistics["published"], 0) << "there is no footingd";
+  EXPECT_EQ(received->statistics["advice"], "");
   EXPECT_EQ(received->statistics["people"][0]["joints"], 50 * kJoints);
   EXPECT_EQ(received->statistics["people"][0]["dialect"], "footing");
 }

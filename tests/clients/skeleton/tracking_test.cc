@@ -38,53 +38,6 @@ TEST(SenderClock, TakesTheFastestPacketOfAnotherClockAsTypical) {
   EXPECT_EQ(clock.Age(38 * kMs, false, 14'033 * kMs, kWallNs), 40 * kMs);
 }
 
-TEST(Placement, PutsAFacingCamera) {
-  // 2.5 m before the person, 1 m high, looking back along x: K's left is W's right.
-  const Eigen::Isometry3d X_WK = ToPose({.p_W_m = {2.5, 0, 1}, .yaw_rad = kPi});
-  const auto near = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    EXPECT_LT((a - b).norm(), 1e-12) << a.transpose();
-  };
-  near(X_WK * Eigen::Vector3d(-0.3, 0.2, 2.5), {0, 0.3, 1.2});
-  // Pitched up by 0.1 rad: what is straight ahead is higher.
-  const Eigen::Isometry3d up = ToPose({.p_W_m = {0, 0, 0}, .yaw_rad = 0, .pitch_rad = 0.1});
-  near(up * Eigen::Vector3d(0, 0, 1), {std::cos(0.1), 0, std::sin(0.1)});
-  // Rolled so that its left side is up.
-  const Eigen::Isometry3d rolled = ToPose({.p_W_m = {0, 0, 0}, .yaw_rad = 0, .roll_rad = 0.1});
-  near(rolled * Eigen::Vector3d(1, 0, 0), {0, std::cos(0.1), std::sin(0.1)});
-}
-
-TEST(Placement, FindsACameraFromAPersonWhoStands) {
-  const CameraPlace truth{
-      .p_W_m = {2.1, 0.4, 1.3}, .yaw_rad = 2.9, .pitch_rad = -0.15, .roll_rad = 0.05};
-  const Eigen::Isometry3d X_KW = ToPose(truth).inverse();
-  const Eigen::Isometry3d X_WS =  // Standing() is before a level camera; feet to W's origin.
-      ToPose({.p_W_m = {2.5, 0, 0.9 + kAnkleHeightM}, .yaw_rad = kPi});
-  Skeleton seen = Standing();
-  for (JointReading& joint : seen.joints) joint.p_K_m = X_KW * (X_WS * joint.p_K_m);
-  const std::vector<Skeleton> frames(kStandingFrames, seen);
-  const auto fit = FitStanding(frames, {.pitch_rad = truth.pitch_rad, .roll_rad = truth.roll_rad});
-  ASSERT_TRUE(fit) << fit.error().message;
-  EXPECT_NEAR(fit->place.yaw_rad, truth.yaw_rad, 1e-9);
-  EXPECT_LT((fit->place.p_W_m - truth.p_W_m).norm(), 1e-9);
-  EXPECT_LT(fit->lean_rad, 0.01);
-  // With the tilt unknown, the person seems to lean by as much.
-  const auto level = FitStanding(frames, {});
-  ASSERT_TRUE(level);
-  EXPECT_NEAR(level->lean_rad, std::hypot(0.15, 0.05), 0.01);
-}
-
-TEST(Placement, RefusesWhatIsNoStand) {
-  std::vector<Skeleton> frames(kStandingFrames, Standing());
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    for (JointReading& joint : frames[i].joints) joint.p_K_m.x() += 0.005 * static_cast<double>(i);
-  EXPECT_NE(FitStanding(frames, {}).error().message.find("stand still"), std::string::npos);
-  frames.assign(kStandingFrames, Standing());
-  for (Skeleton& frame : frames) frame[Joint::kNeck].p_K_m.z() -= 0.3;
-  EXPECT_NE(FitStanding(frames, {}).error().message.find("leans by"), std::string::npos);
-  for (Skeleton& frame : frames) frame[Joint::kLeftFoot].confidence = 0;
-  EXPECT_NE(FitStanding(frames, {}).error().message.find("step back"), std::string::npos);
-}
-
 TEST(Observation, HasACovarianceByHowTheJointWasSeen) {
   Skeleton skeleton = Standing();
   skeleton[Joint::kLeftHand].confidence = 0.5;
@@ -161,7 +114,7 @@ TEST(Tracker, PublishesThePersonInWFromTheStandOn) {
   Tracker tracker({.stand = true});
   const auto clip = SyntheticClip();
   const auto observations = Track(tracker, clip, Dialect::kFooting);
-  ASSERT_EQ(observations.size(), clip.size() - kStandingFrames + 1);
+  ASSERT_EQ(observations.size(), clip.size() - 60) << "two seconds at 30 Hz";
   ASSERT_TRUE(tracker.camera());
   EXPECT_LT((tracker.camera()->p_W_m - Eigen::Vector3d(2.4, 0, 1)).norm(), 0.01);
   const Observation& first = observations.front();
@@ -169,6 +122,59 @@ TEST(Tracker, PublishesThePersonInWFromTheStandOn) {
   EXPECT_NEAR(first.joints[Index(Joint::kLeftFoot)].p_W_m.y(), 0.1, 0.01);
   EXPECT_NEAR(first.joints[Index(Joint::kLeftFoot)].p_W_m.z(), kAnkleHeightM, 0.01);
   EXPECT_EQ(tracker.Messages().size(), 1u) << "the placement";
+}
+
+TEST(Tracker, PublishesNothingOfSwappedSidesAndAllWithTheRemedy) {
+  for (const bool mirrored : {false, true}) {
+    const DialectOptions sender{.mirrored = mirrored, .swap_sides = true};
+    Tracker wrong({.stand = true});
+    EXPECT_TRUE(Track(wrong, SyntheticClip(), Dialect::kFooting, sender).empty());
+    EXPECT_FALSE(wrong.camera());
+    EXPECT_NE(wrong.AdviceOf(1).find("--swap-sides"), std::string::npos) << wrong.AdviceOf(1);
+    // Without a placement it is seen as soon as hands and knees show it.
+    Tracker placed({});
+    Track(placed, SyntheticClip(), Dialect::kFooting, sender);
+    EXPECT_EQ(placed.counts().people.at(1).fault, Fault::kSwapped);
+    Tracker right({.dialect = sender, .stand = true});
+    const auto observations = Track(right, SyntheticClip(), Dialect::kFooting, sender);
+    ASSERT_FALSE(observations.empty());
+    EXPECT_EQ(right.AdviceOf(1), "");
+    EXPECT_NEAR(right.camera()->yaw_rad, kPi, 0.01);
+    EXPECT_NEAR(observations.front().joints[Index(Joint::kLeftFoot)].p_W_m.y(), 0.1, 0.01);
+  }
+}
+
+TEST(Tracker, PlacesTheCameraAfterTwoSecondsAtAnyRate) {
+  for (const int interval_ms : {1, 200}) {
+    Tracker tracker({.stand = true});
+    std::vector<Observation> out;
+    for (int now_ms = 0; now_ms <= 2000; now_ms += interval_ms) {
+      EXPECT_TRUE(out.empty()) << now_ms;
+      if (now_ms > 0) {
+        EXPECT_NE(tracker.AdviceOf(1).find("not placed yet"), std::string::npos);
+      }
+      for (const std::string& packet : Encode(Dialect::kFooting, {}, Standing()))
+        tracker.Take(osc::AsBytes(packet), now_ms * kMs, kWallNs, out);
+    }
+    EXPECT_EQ(out.size(), 1u) << interval_ms;
+    EXPECT_EQ(tracker.AdviceOf(1), "");
+  }
+}
+
+TEST(Tracker, SaysThatTheWantedPersonIsNotAmongThoseSeen) {
+  Tracker tracker({.user = 7});
+  std::vector<Observation> out;
+  Skeleton skeleton = Standing();
+  for (int now_ms = 0; now_ms <= 3000; now_ms += 100) {
+    for (const std::int32_t user : {1, 2}) {
+      skeleton.user = user;
+      for (const std::string& packet : Encode(Dialect::kFooting, {}, skeleton))
+        tracker.Take(osc::AsBytes(packet), now_ms * kMs, kWallNs, out);
+    }
+  }
+  EXPECT_TRUE(out.empty());
+  EXPECT_NE(tracker.Advice().find("person 7 was not seen; seen: 1, 2"), std::string::npos);
+  EXPECT_EQ(tracker.Messages(), std::vector<std::string>{tracker.Advice()});
 }
 
 TEST(Tracker, SaysWhenAWrongScaleComesAndPublishesNothing) {

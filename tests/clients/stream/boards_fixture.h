@@ -16,7 +16,7 @@ class BoardsTest : public testing::Test {
   BoardsTest() {
     std::ofstream(path_) << R"({"keys": [{"seconds": 1.5}, {"seconds": 1, "both_raise_deg": -80},
         {"seconds": 1}, {"seconds": 0.7, "crouch_m": 0.2, "weight": 0.4},
-        {"seconds": 0.7, "crouch_m": 0, "weight": 0}, {"seconds": 1}]})";
+        {"seconds": 0.7, "crouch_m": 0, "weight": 0}, {"seconds": 1, "both_raise_deg": 0}]})";
     options_.stage.motion = path_;
     options_.stage.mass_kg = 60;
   }

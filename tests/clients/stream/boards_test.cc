@@ -94,6 +94,12 @@ TEST_F(BoardsTest, AScriptGoesOnAndARecordingStaysAtItsEnd) {
   EXPECT_EQ(stage.At(-1).frame, 0);
 }
 
+TEST_F(BoardsTest, AScriptThatDoesNotEndInTheTPoseIsPerformedOnce) {
+  EXPECT_TRUE(MadeStage(options_.stage)->repeats);
+  std::ofstream(path_) << R"({"keys": [{"seconds": 1}, {"seconds": 1, "crouch_m": 0.2}]})";
+  EXPECT_FALSE(MadeStage(options_.stage)->repeats);
+}
+
 TEST_F(BoardsTest, BoardsLaidUnderWideFeetLieFurtherApart) {
   std::ofstream(path_) << R"({"keys": [{"seconds": 0.5}, {"seconds": 0.8, "weight": -1},
       {"seconds": 0.6, "left_out_m": 0.22}, {"seconds": 0.8, "weight": 1},

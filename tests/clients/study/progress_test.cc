@@ -63,6 +63,19 @@ TEST(Progress, GoesOnWithTheFirstPhaseThatIsNotFinished) {
   EXPECT_TRUE(progress.interrupted_trial.empty());
 }
 
+TEST(Progress, AnAttemptThatWasInterruptedIsRepeatedAndNamed) {
+  const plan::Session session = TwoTrials();
+  Events events;
+  events.Trial("wrist.straight1", 1);
+  events.Add(EventKind::kTrialFinished, {{"outcome", kInterrupted}, {"time_s", 3}});
+  const Progress progress = Replay(session.phases, events.list);
+  EXPECT_EQ(progress.interrupted_trial, "wrist.straight11");
+  EXPECT_TRUE(progress.outcomes.empty());
+  const Records records = Collect(events.list);
+  EXPECT_TRUE(Counting(records).empty());
+  EXPECT_EQ(records.trials.front().time_s, 3);
+}
+
 TEST(Progress, AddsUpTheActiveTimeOfFinishedPhases) {
   Events events;
   events.Add(EventKind::kPhaseFinished, {{"phase", "a"}, {"active_s", 40.5}});

@@ -8,58 +8,13 @@
 #include "clients/study/report/figure.h"
 #include "clients/study/report/page.h"
 #include "common/stream/response.h"
+#include "tests/clients/study/study_people.h"
 
 namespace footing::study::report {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-plan::Protocol Two() {
-  plan::Protocol protocol;
-  protocol.name = "a <b> study";
-  protocol.interfaces = {"wrist", "joystick"};
-  protocol.control = "joystick";
-  protocol.seed = 4;
-  return protocol;
-}
-
-records::Trial Test(const std::string& participant, const std::string& interface, double time_s,
-                    std::size_t curves) {
-  records::Trial trial;
-  trial.participant = participant;
-  trial.phase = interface + ".test";
-  trial.interface = interface;
-  trial.kind = "test_track";
-  trial.outcome = "finished";
-  trial.time_s = time_s;
-  trial.failures.resize(curves, {1, "curve", 1, 1, false});
-  return trial;
-}
-
-/// With the joystick everybody fails two times more and takes 10 s longer.
-std::vector<records::Records> People(int count) {
-  std::vector<records::Records> people;
-  for (int i = 0; i < count; ++i) {
-    records::Records& person = people.emplace_back();
-    person.participant = "P" + std::to_string(i);
-    person.finished = true;
-    const auto failures = static_cast<std::size_t>(i % 3);
-    person.trials = {Test(person.participant, "wrist", 50 + i, failures),
-                     Test(person.participant, "joystick", 60 + i, failures + 2)};
-    person.ratings = {{person.participant, "wrist", "fun", 4, false},
-                      {person.participant, "joystick", "fun", 2, false}};
-  }
-  return people;
-}
-
-const nlohmann::ordered_json& Find(const Analysis& analysis, const std::string& id) {
-  static const nlohmann::ordered_json none;
-  for (const auto& one : analysis.json["measures"]) {
-    if (one["id"] == id) return one;
-  }
-  return none;
-}
 
 TEST(StudyAnalysis, ComparesEachMeasureWithTheControl) {
   const Analysis analysis = Analyze(Two(), People(8));

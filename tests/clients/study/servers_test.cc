@@ -85,6 +85,7 @@ class ServersTest : public ::testing::Test {
     v1::Character& character = *simulation_->tick.mutable_characters()->add_characters();
     trial_ = character.mutable_trial();
     trial_->set_phase(v1::TrialState::PHASE_RUNNING);
+    trial_->set_trial("a trial");
     interface_ = character.mutable_interface();
     interface_->set_interface(v1::USER_INTERFACE_ARM);
     simulation_->answer = [this](const v1::Command& command) { return Answer(command); };
@@ -96,6 +97,7 @@ class ServersTest : public ::testing::Test {
     result.set_ok(command.has_set_interface());
     if (command.has_set_interface()) interface_->set_interface(v1::USER_INTERFACE_WRIST);
     if (!command.has_stop_trial()) return result;
+    ++stops_;
     result.set_message("stop_trial: no trial is ready or running");
     if (ends_by_itself_) trial_->set_phase(v1::TrialState::PHASE_FINISHED);
     if (!ends_by_itself_) result.set_message("stop_trial: the brake is stuck");
@@ -122,10 +124,31 @@ class ServersTest : public ::testing::Test {
   v1::TrialState* trial_ = nullptr;
   v1::InterfaceState* interface_ = nullptr;
   bool ends_by_itself_ = true;
+  int stops_ = 0;
 };
 
 TEST_F(ServersTest, ATrialThatEndsByItselfNeedNotBeStopped) {
   EXPECT_THAT(UseWrist(), Not(HasSubstr("not stopped")));
+  EXPECT_EQ(stops_, 1);
+}
+
+TEST_F(ServersTest, BeforeTheFirstTrialNothingIsStopped) {
+  trial_->set_phase(v1::TrialState::PHASE_READY);
+  trial_->clear_trial();
+  ends_by_itself_ = false;
+  EXPECT_EQ(UseWrist(), "");
+  EXPECT_EQ(stops_, 0);
+}
+
+TEST_F(ServersTest, OnlyTheBrokenConnectionIsACause) {
+  auto servers =
+      Servers::Open(console_, {sensor_address_, simulation_address_, "the test"}, active_);
+  ASSERT_TRUE(servers) << servers.error().message;
+  EXPECT_EQ((*servers)->WhyNotLive(), "");
+  simulation_.reset();
+  ASSERT_EQ(console_.RunUntil([&] { return !(*servers)->live(); }, 20), Waited::kDone);
+  EXPECT_THAT((*servers)->WhyNotLive(), HasSubstr("footing-sim at "));
+  EXPECT_THAT((*servers)->WhyNotLive(), Not(HasSubstr("footingd")));
 }
 
 TEST_F(ServersTest, WhyATrialThatGoesOnWasNotStoppedIsSaid) {

@@ -127,10 +127,30 @@ def check_recording_in_the_way(stage):
     assert done.returncode == 0 and f"{first}, attempt 1" in done.stderr, done
 
 
+def trials_of(stage, participant):
+    return [one for one in journal(stage, participant) if one["event"] == "trial_started"]
+
+
+def check_interrupted(stage):
+    """Ctrl-C in a trial: its recording is finished and the attempt has an outcome, which does not count."""
+    running = stage.start("footing-study", *words(stage, "P02", "--unattended"), name="study")
+    stage.wait_for(lambda: trials_of(stage, "P02"), "a trial", 60)
+    running.send_signal(signal.SIGINT)
+    assert running.wait(30) == 1
+    trial, end = trials_of(stage, "P02")[0], journal(stage, "P02")[-1]
+    assert end["event"] == "trial_finished" and end["outcome"] == "interrupted", end
+    assert end["trial"] == trial["trial"] and "resumes the session" in end["reason"], end
+    path = stage.folder / "s.study/P02" / trial["recording"]
+    assert stage.run("footing-log", "info", path).returncode == 0, path
+    assert '"interrupted"' in stage.run("footing-log", "info", path, "--json").stdout, path
+
+
 def check_lost_device(stage):
     """Without its device a trial ends as lost, and the next run attempts it again."""
     running = stage.start("footing-study", *words(stage, "P02", "--unattended"), name="study")
-    stage.wait_for(lambda: any(one["event"] == "trial_started" for one in journal(stage, "P02")), "a trial", 60)
+    stage.wait_for(lambda: len(trials_of(stage, "P02")) == 2, "a second attempt", 60)
+    resumed = next(one for one in journal(stage, "P02") if one["event"] == "session_resumed")
+    assert resumed["interrupted_trial"] == trials_of(stage, "P02")[0]["trial"], resumed
     stage.stop("footing-stream")
     assert running.wait(60) == 3
     lost = journal(stage, "P02")[-1]
@@ -138,8 +158,8 @@ def check_lost_device(stage):
     stage.start_user("demo")
     done = stage.run("footing-study", *words(stage, "P02", "--unattended"), timeout_s=120)
     assert done.returncode == 0, done
-    attempts = [one["attempt"] for one in journal(stage, "P02") if one["event"] == "trial_started"]
-    assert attempts == [1, 2, 1, 1, 1], attempts
+    attempts = [one["attempt"] for one in trials_of(stage, "P02")]
+    assert attempts == [1, 2, 3, 1, 1, 1], attempts
 
 
 def check_withdrawal(stage):
@@ -246,6 +266,7 @@ def main():
         check_recordings(stage, trials, finished)
         check_recording_in_the_way(stage)
         check_attended(stage)
+        check_interrupted(stage)
         check_lost_device(stage)
         check_withdrawal(stage)
         check_report(stage)

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -94,6 +96,21 @@ TEST(Config, AWrongTypeOrRangeSaysWhatIsAllowed) {
   EXPECT_EQ(example.rate_hz, 100);
 }
 
+TEST(Config, AWrongValueOfAnObjectIsNamedWithItsReason) {
+  std::map<std::string, std::string> roles;
+  Binder binder;
+  binder.TextMap("roles", roles, "Role of each serial", [](const std::string& text) {
+    return text == "nose" ? std::string("role nose does not exist") : std::string();
+  });
+  EXPECT_EQ(binder.ApplySetting(R"(roles={"a": "head", "b": "nose"})").error().message,
+            "config: roles in --set: 'b': role nose does not exist");
+  EXPECT_THAT(binder.ApplySetting(R"(roles={"a": 1})").error().message,
+              HasSubstr("it must be an object of strings"));
+  EXPECT_TRUE(roles.empty());
+  EXPECT_TRUE(binder.ApplySetting(R"(roles={"a": "head"})"));
+  EXPECT_EQ(roles.at("a"), "head");
+}
+
 TEST(Config, TextThatIsNoObjectIsRefusedInOneLine) {
   Example example;
   Binder binder;
@@ -158,6 +175,35 @@ TEST(DataFile, AFileOfAnyEndingIsReadUnlessItsNameIsBuiltIn) {
   EXPECT_EQ(*named, "hello");
   ASSERT_TRUE(built_in) << built_in.error().message;
   EXPECT_NE(*built_in, "hello");
+}
+
+TEST(DataFile, WhatIsNotARegularFileIsRefusedAtOnce) {
+  const test::TemporaryFolder folder;
+  const std::string pipe = folder.Path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const auto& [path, kind] : {std::pair<std::string, std::string>{pipe, "a pipe"},
+                                   {folder.Path("."), "a folder"},
+                                   {"/dev/null", "a device"}}) {
+    const auto read = ReadTextFile(path);  // Of the pipe it would wait for a writer.
+    ASSERT_FALSE(read) << path;
+    EXPECT_EQ(read.error().message,
+              "cannot open " + path + ": it is " + kind + ", not a regular file");
+  }
+  const auto missing = ReadTextFile(folder.Path("none"));
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, HasSubstr("No such file or directory"));
+  Binder binder;
+  EXPECT_THAT(binder.ApplyFile(pipe).error().message, HasSubstr("it is a pipe"));
+}
+
+TEST(DataFile, IsReadToItsEndOrRefusedIfItIsTooLong) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("text"), text(100'000, 'x');
+  std::ofstream(path) << text;
+  EXPECT_EQ(ReadTextFile(path).value(), text);
+  const auto refused = ReadTextFile(path, 99'999);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kInvalidData);
 }
 
 TEST(Config, EachValueKnowsWhereItComesFrom) {

@@ -169,6 +169,26 @@ TEST(CameraFile, ErrorsNameFileKeyAndWhatIsAllowed) {
         R"({"spheres": [{"role": ")" + std::string(role) + R"(", "colour_dn": [9, 90, 9]}]})";
     EXPECT_EQ(ParseCameraFile(spheres, "x").ok(), fits) << role;
   }
+  EXPECT_NE(problem("\"rate_hz\": 60, \"readout_s\": 0.02, ").find("time between frames"),
+            std::string::npos);
+}
+
+TEST(CameraFile, SpheresThatCouldBeMistakenForEachOtherAreRefused) {
+  const auto problem = [](const char* role, const char* colour) {
+    const auto read = ParseCameraFile(
+        std::string(R"({"spheres": [{"role": "left_hand", "colour_dn": [170, 40, 150]}, )") +
+            R"({"role": ")" + role + R"(", "colour_dn": )" + colour + "}]}",
+        "eye.json");
+    return read ? "" : read.error().message;
+  };
+  EXPECT_EQ(problem("right_hand", "[40, 170, 160]"), "");
+  EXPECT_EQ(problem("left_hand", "[40, 170, 160]"),
+            "eye.json, spheres 1 and 2 both have the role left_hand");
+  // Dimmer and in more white light, but of the same hue.
+  EXPECT_NE(problem("right_hand", "[120, 55, 110]").find("spheres 1 and 2: their colours are 0"),
+            std::string::npos);
+  EXPECT_NE(problem("right_hand", "[170, 40, 110]").find("degrees of hue apart"),
+            std::string::npos);
 }
 
 TEST(FrameFolder, ReadsFramesInTheOrderOfTheirNames) {

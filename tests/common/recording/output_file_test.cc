@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -74,6 +77,25 @@ TEST(OutputFile, LeavesNothingWhereNothingWasWritten) {
   EXPECT_FALSE(std::filesystem::exists(path));
   ASSERT_TRUE(OutputFile::Create(path, false)->Write(""));
   EXPECT_TRUE(std::filesystem::exists(path)) << "an empty file was asked for";
+}
+
+TEST(OutputFile, LeavesNothingWhereNoByteCouldBeWritten) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("table");
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit none{0, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+  {
+    auto file = OutputFile::Create(path, false);
+    EXPECT_FALSE(file->Write("x"));
+    EXPECT_TRUE(file->empty());
+    EXPECT_TRUE(std::filesystem::exists(path));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
 }
 
 TEST(OutputFile, LeavesAloneWhatTookItsPlace) {

@@ -13,6 +13,11 @@ TEST(Lines, LinesEndInAnyWayAndAreCounted) {
   EXPECT_FALSE(lines.Next().has_value());
 }
 
+TEST(Lines, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  Lines lines("\xEF\xBB\xBFHIERARCHY\n", "f.bvh");
+  EXPECT_EQ(lines.Next(), "HIERARCHY");
+}
+
 TEST(Lines, RowsLeaveOutBlanksAndComments) {
   Lines lines("# a comment\n\n  # another\n1,2\n", "f.csv");
   EXPECT_EQ(lines.NextRow(), "1,2");

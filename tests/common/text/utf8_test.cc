@@ -24,5 +24,15 @@ TEST(Utf8, CharactersCountCodePointsAndStrayBytes) {
              "e"));
 }
 
+TEST(Utf8, PrintableTextHasNoControlCharacters) {
+  for (const char* text : {"", "left player", "Grüße €, 𝄞", "\u00a0"}) {
+    EXPECT_TRUE(IsPrintable(text)) << text;
+  }
+  for (const char* text : {"a\nb", "\t", "\x1b[2J", "\x7f", "\u0080", "\u009b2J", "a\xff"}) {
+    EXPECT_FALSE(IsPrintable(text)) << text;
+  }
+  EXPECT_FALSE(IsPrintable(std::string_view("\0", 1)));
+}
+
 }  // namespace
 }  // namespace footing::text

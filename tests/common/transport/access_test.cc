@@ -1,10 +1,12 @@
 #include "common/transport/access.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 
 #include "common/tls/fingerprint.h"
+#include "common/tls/identity.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::transport {
@@ -60,6 +62,43 @@ TEST(Access, AClientsFileThatOthersMayWriteIsRefused) {
     ServerOptions options;
     EXPECT_EQ(settings.Apply(options).ok(), taken) << mode;
   }
+}
+
+TEST(Access, AClientsFileOrAnIdentityThatIsAPipeIsRefusedAtOnce) {
+  const test::TemporaryFolder folder;
+  AccessSettings settings;
+  settings.clients_file = folder.Path("pipe");
+  ASSERT_EQ(mkfifo(settings.clients_file.c_str(), 0600), 0);
+  ServerOptions options;
+  const auto refused = settings.Apply(options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message,
+            "clients file " + settings.clients_file + ": it is a pipe, not a regular file");
+  const auto identity = tls::Identity::LoadOrMake(settings.clients_file, "test");
+  ASSERT_FALSE(identity.ok());
+  EXPECT_NE(identity.error().message.find("it is a pipe"), std::string::npos);
+}
+
+TEST(Access, WhatTheStartNeedsIsCheckedWithoutASocket) {
+  const test::TemporaryFolder folder;
+  AccessSettings settings;
+  settings.identity_file = folder.Path("identity.pem");
+  const auto why = [&](const std::string& address) {
+    const auto checked = settings.CheckStart({address});
+    return checked ? std::string() : checked.error().message;
+  };
+  EXPECT_NE(why("nonsense"), "");
+  EXPECT_NE(why("tcp:0.0.0.0:7700").find("must be encrypted"), std::string::npos);
+  EXPECT_NE(why("tls:0.0.0.0:7700").find("set token_file or clients_file"), std::string::npos);
+  settings.token_file = folder.Path("token");
+  EXPECT_NE(why("unix:" + folder.Path("socket")).find("token file"), std::string::npos);
+  std::ofstream(settings.token_file) << "0123456789abcdef\n";
+  ASSERT_EQ(chmod(settings.token_file.c_str(), 0600), 0);
+  EXPECT_EQ(why("tls:0.0.0.0:7700"), "");
+  EXPECT_NE(access(settings.identity_file.c_str(), F_OK), 0) << "the start makes it";
+  std::ofstream(settings.identity_file) << "nonsense";
+  ASSERT_EQ(chmod(settings.identity_file.c_str(), 0600), 0);
+  EXPECT_NE(why("tls:0.0.0.0:7700").find("identity"), std::string::npos);
 }
 
 TEST(Access, WithoutEncryptionThereMustBeAToken) {

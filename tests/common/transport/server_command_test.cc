@@ -67,6 +67,20 @@ TEST_F(ServerCommandTest, ACommandPastItsDeadlineIsNotCarriedOut) {
   EXPECT_NE(client->messages.back().command_result().message().find("40 ms"), std::string::npos);
 }
 
+TEST_F(ServerCommandTest, ATextWithControlCharactersIsRefusedBeforeItIsCarriedOut) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  v1::Envelope message;
+  message.mutable_command()->set_id(1);
+  message.mutable_command()->mutable_assign_role()->set_rig("a\x1b[2J");
+  client->Send(message);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kCommandResult));
+  const v1::CommandResult& result = client->messages.back().command_result();
+  EXPECT_FALSE(result.ok());
+  EXPECT_NE(result.message().find("assign_role.rig has control characters"), std::string::npos);
+  EXPECT_TRUE(commands_.empty());
+}
+
 TEST_F(ServerCommandTest, PingIsAnsweredWithFourStamps) {
   StartServer();
   const auto client = WithRole(v1::ROLE_VIEW, 1);

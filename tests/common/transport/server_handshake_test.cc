@@ -118,6 +118,30 @@ TEST_F(ServerHandshakeTest, OneSessionTooManyIsRefusedAndTheOthersStay) {
   EXPECT_EQ(server_->statistics().refused, 1u);
 }
 
+TEST_F(ServerHandshakeTest, RefusalsAreLoggedOnceIn10SForEachReason) {
+  StartServer();
+  for (int i = 0; i < 3; ++i) RefusalOf(Subscribe(), 1);  // In place of Hello.
+  RefusalOf(Hello(v1::ROLE_CONTROL), 1);
+  ASSERT_EQ(overloads_.size(), 2u);
+  EXPECT_EQ(overloads_[0],
+            "refused a client from 127.0.0.1: the first message must be Hello (1 since start)");
+  EXPECT_NE(overloads_[1].find("the role control is not given"), std::string::npos);
+  now_ns_ += 10'000'000'001;
+  RefusalOf(Subscribe());
+  ASSERT_EQ(overloads_.size(), 3u);
+  EXPECT_EQ(overloads_[2], "refused a client of user " + std::to_string(geteuid()) +
+                               ": the first message must be Hello (5 since start)");
+}
+
+TEST_F(ServerHandshakeTest, ASessionThatSendsRubbishIsEndedAndLogged) {
+  StartServer();
+  const auto client = Subscribed(Subscribe());
+  client->Send(Hello());
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kGoodbye));
+  ASSERT_EQ(overloads_.size(), 1u);
+  EXPECT_EQ(overloads_[0], "session 1 (test) is ended: Hello came twice");
+}
+
 TEST_F(ServerHandshakeTest, ACrowdOverTcpDoesNotLockTheAdministratorOut) {
   ServerOptions options = Options();
   options.sessions.max_sessions = 3;

@@ -30,6 +30,17 @@ TEST(Token, OnlyAFileOfItsOwnerAloneWithALongLineIsTaken) {
   EXPECT_EQ(brief.error().message.find("short"), std::string::npos) << "never shown";
 }
 
+TEST(Token, AFolderOrAPipeIsRefusedAtOnceAndNamed) {
+  const test::TemporaryFolder folder;
+  const std::string pipe = folder.Path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const auto of_folder = ReadTokenFile(folder.Path(".")), of_pipe = ReadTokenFile(pipe);
+  ASSERT_FALSE(of_folder.ok());
+  EXPECT_NE(of_folder.error().message.find("it is a folder, not"), std::string::npos);
+  ASSERT_FALSE(of_pipe.ok());
+  EXPECT_NE(of_pipe.error().message.find("it is a pipe, not"), std::string::npos);
+}
+
 TEST(Token, SecretsAreEqualOrNot) {
   EXPECT_TRUE(IsSameSecret("abc", "abc"));
   EXPECT_FALSE(IsSameSecret("abc", "abd"));

@@ -44,6 +44,11 @@ with tempfile.TemporaryDirectory() as folder:
     assert refused.returncode == 4 and "another seed" in refused.stderr, refused.stderr
     assert run(TUNE, "--gait", "step", "--speeds", "0").returncode == 2
     assert run(TUNE, "--gait", "walk", "--speeds", "1,1", "--out", "x").returncode == 2
+    fast = run(TUNE, "--gait", "walk", "--speeds", "1,3", "--iterations", "0", "--trials", "1")
+    assert fast.returncode == 2 and "--speeds: 3 m/s" in fast.stderr, fast.stderr
+    assert "walk, 1.75 m/s" in fast.stderr, fast.stderr
+    still = run(TUNE, "--gait", "walk", "--speeds", "0", "--iterations", "0", "--trials", "12")
+    assert still.returncode == 0, still.stderr  # Its pits are at the start of the track.
     assert run(TUNE, "--gait", "hop", "--speeds", "1", "--out", "x").returncode == 2
 
     evaluated = run(EVAL, "gait", "--gait", "step", "--seconds", "2", "--gains", str(broken),

@@ -66,10 +66,16 @@ TEST_F(SocketSourceTest, WhatMakesNoSenseClosesItsConnectionWithOneLine) {
       {"unknown", [](Peer& peer) { peer.Attach(0, "a", 0x1234); }},
       {"serial is empty", [](Peer& peer) { peer.Attach(0, ""); }},
       {"printable", [](Peer& peer) { peer.Attach(0, "a\nb"); }},
-      {"slot taken",
+      {"slot 3 is taken",
        [](Peer& peer) {
-         peer.Attach(0, "a");
-         peer.Attach(0, "b");
+         peer.Attach(3, "a");
+         peer.Attach(3, "b");
+       }},
+      {"a connection has at most 16 devices",
+       [](Peer& peer) {
+         for (std::uint32_t slot = 0; slot < 17; ++slot) {
+           peer.Attach(slot, "a" + std::to_string(slot));
+         }
        }},
       {"other way",
        [](Peer& peer) {

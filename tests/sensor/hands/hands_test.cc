@@ -44,7 +44,11 @@ TEST(Hands, AFrameAtEveryLimitIsTaken) {
   frame.points[0].position_m = {0, 0, stream::kFarthestPointM};
   frame.points[0].sd_m = {1, 1, 1};
   frame.points[1].confidence = 0;
-  frame.points.resize(stream::kMostTrackedPoints, frame.points[0]);
+  for (int joint = 1; joint <= static_cast<int>(stream::kBodyJoints); ++joint) {
+    stream::TrackedPoint& point = frame.points.emplace_back(frame.points[0]);
+    point.role = DeviceRole::kUnspecified;
+    point.joint = static_cast<stream::BodyJoint>(joint);
+  }
   EXPECT_EQ(Problem(frame), "");
 }
 
@@ -98,6 +102,8 @@ TEST(Hands, EachBadValueIsRefusedAndNamed) {
        [](HandFrame& f) {
          f.tracker_pose = stream::TrackerPose{{0, 0, 0}, {0.9, 0, 0, 0}};
        }},
+      {"points 1 and 2 are of the same hand",
+       [](HandFrame& f) { f.points[1].role = f.points[0].role; }},
       {"name", [](HandFrame& f) { f.tracker = "a\nb"; }},
       {"name", [](HandFrame& f) { f.rig = std::string(65, 'r'); }},
   };

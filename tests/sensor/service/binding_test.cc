@@ -17,6 +17,16 @@ TEST(Binding, IsRigAndRole) {
   }
 }
 
+TEST(Binding, WhatIsWrongIsNamed) {
+  const auto why = [](const std::string& text) { return ParseBinding(text).error().message; };
+  EXPECT_NE(why("main/nose").find("role 'nose' does not exist; there are left_hand"),
+            std::string::npos);
+  EXPECT_NE(why(std::string(65, 'r') + "/head").find("must be 1 to 64 bytes"), std::string::npos);
+  EXPECT_NE(why("a\x1b/head").find("'a?' must be 1 to 64 bytes without control"),
+            std::string::npos);
+  EXPECT_EQ(ParseBinding("a/b/head").value(), (Binding{"a/b", DeviceRole::kHead}));
+}
+
 TEST(Binding, RolesAreGivenInOrderOnEachRig) {
   std::vector<Binding> taken;
   for (const DeviceRole role : {DeviceRole::kLeftHand, DeviceRole::kRightHand, DeviceRole::kLeftLeg,

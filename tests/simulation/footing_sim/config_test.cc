@@ -47,6 +47,15 @@ TEST(FootingSimConfig, AnAddressThatIsNoneIsRefusedBeforeAnythingListens) {
   EXPECT_THAT(checked.error().message, HasSubstr("--sensor: \"nonsense\" is not an address"));
 }
 
+TEST(FootingSimConfig, MetricsAreServedOnAUnixSocketOnly) {
+  Config config;
+  config.serving.metrics = "unix:/tmp/metrics.sock";
+  EXPECT_TRUE(Check(config));
+  config.serving.metrics = "tcp:127.0.0.1:9100";
+  ASSERT_FALSE(Check(config));
+  EXPECT_THAT(Check(config).error().message, HasSubstr("on a Unix socket only"));
+}
+
 TEST(FootingSimConfig, EveryInterfaceIsKnownAndCarriesItsOptions) {
   for (const auto interface : stream::kUserInterfaces) {
     Config config;

@@ -207,7 +207,9 @@ TEST(StraightTrack, AsksForEveryChangeOfGaitOfThePaperAtItsLine) {
 
 TEST(Track, ASegmentRepeats) {
   const auto track = ParseTrack(
-      R"({"version": 1, "segments": [{"length_m": 2, "curve_deg": 30, "repeat": 3}]})", "arc");
+      R"({"version": 1, "finish_m": 0,
+          "segments": [{"length_m": 2, "curve_deg": 30, "repeat": 3}]})",
+      "arc");
   ASSERT_TRUE(track.ok());
   ASSERT_EQ(track.value().segments.size(), 3u);
   EXPECT_NEAR(track.value().segments[2].heading_rad, std::numbers::pi / 2, 1e-12);
@@ -263,32 +265,6 @@ TEST(GroundBox, KeepsAPitsEdges) {
   const auto track = ParseTrack(kHills, "hills").value();
   const GroundBox after_pit = BoxOf(track, 3);
   EXPECT_NEAR(after_pit.half_size_m.x(), 2.5, 1e-12);
-}
-
-TEST(Track, RefusesNumbersOutOfRangeByName) {
-  for (const char* text :
-       {R"({"version": 1, "segments": [{"length_m": -3}]})", R"({"version": 1, "segments": []})",
-        R"({"version": 2, "segments": [{"length_m": 3}]})",
-        R"({"version": 1, "segments": [{"length_m": 3, "slope_deg": 80}]})", "[1, 2]",
-        R"({"version": 1, "segments": [{"length_m": 3, "repeat": 1001}]})",
-        R"({"version": 1, "segments": [{"length_m": 3, "lenght_m": 3}]})",
-        R"({"version": 1, "help_over_pit": false, "segments": [{"length_m": 3}]})",
-        R"({"version": 1, "start_m": 20, "finish_m": 10, "segments": [{"length_m": 30}]})",
-        R"({"version": 1, "mark": {"at_m": 9}, "segments": [{"length_m": 30}]})",
-        R"({"version": 1, "mark": {"at_m": 29, "tasks": [{"name": "a", "after": "run"}]},
-            "segments": [{"length_m": 30}]})",
-        R"({"version": 1, "mark": {"at_m": 9, "tasks": [{"name": "a", "after": "fly"}]},
-            "segments": [{"length_m": 30}]})",
-        R"({"version": 1, "mark": {"at_m": 9, "tasks": [{"name": "a", "before": "run",
-            "after": "run"}]}, "segments": [{"length_m": 30}]})",
-        R"({"version": 1, "endless": true, "segments": [{"length_m": 5, "slope_deg": 1}]})",
-        R"({"version": 1, "endless": true, "extendable": true, "segments": [{"length_m": 5}]})",
-        R"({"version": 1, "extendable": true, "help_over_pits": false,
-            "segments": [{"length_m": 5}]})"}) {
-    const auto track = ParseTrack(text, "bad.json");
-    ASSERT_FALSE(track.ok()) << text;
-    EXPECT_NE(track.error().message.find("bad.json"), std::string::npos);
-  }
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ std::string SubjectOf(const std::string& motion) {
 Result<void> CheckNotTrainedOnFile(const model::Model& model, const std::string& motion,
                                    const std::string& origin) {
   const auto text = config::ReadTextFile(motion, kMostMotionBytes);
-  if (!text) return text.error();
+  if (!text) return {};  // Its reader says why.
   const model::Digest digest = model::Sha256(*text);
   for (const model::DataFile& file : model.provenance.data) {
     if (file.sha256 != digest) continue;
@@ -40,15 +40,19 @@ Result<void> CheckNotTrainedOnFile(const model::Model& model, const std::string&
   return {};
 }
 
-/// Refuses one that was trained on the motion's subject, or with `same_person` on this very file.
+/// Refuses one that was trained on the motion's subject, as the file's name has it, or on this very
+/// file under any name; with `same_person` only the latter.
 Result<reconstruction::NamedModel> ReadModel(const std::string& path, const std::string& motion,
                                              bool same_person) {
   const auto bytes = config::ReadTextFile(path, model::kMostFileBytes);
   if (!bytes) return bytes.error();
   auto model = wire::FromModelFile(*bytes, path);
   if (!model) return model.error();
-  const auto fresh = same_person ? CheckNotTrainedOnFile(*model, motion, path)
-                                 : model::CheckNotTrainedOn(*model, SubjectOf(motion), path);
+  if (!same_person) {
+    const auto fresh = model::CheckNotTrainedOn(*model, SubjectOf(motion), path);
+    if (!fresh) return fresh.error();
+  }
+  const auto fresh = CheckNotTrainedOnFile(*model, motion, path);
   if (!fresh) return fresh.error();
   return reconstruction::NamedModel{path, std::move(*model)};
 }

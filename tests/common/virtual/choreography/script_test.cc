@@ -77,6 +77,29 @@ TEST(Script, AFootThatCarriesMustNotLeaveTheGround) {
   }
 }
 
+TEST(Script, HipsMustNotFallFasterThanABodyDoes) {
+  const auto parsed = [](const std::string& keys) {
+    return ParseScript(R"({"keys": [{"seconds": 1}, )" + keys + "]}", "f");
+  };
+  const auto fast = parsed(R"({"seconds": 0.5, "crouch_m": 0.45})");
+  ASSERT_FALSE(fast);
+  EXPECT_THAT(fast.error().message, HasSubstr("f, key 2: crouch_m changes by 0.45 m in 0.50 s"));
+  EXPECT_THAT(fast.error().message, HasSubstr("give it 0.55 s or more"));
+  EXPECT_TRUE(parsed(R"({"seconds": 0.55, "crouch_m": 0.45})"));
+  EXPECT_FALSE(parsed(R"({"seconds": 1, "crouch_m": 0.45}, {"seconds": 0.3, "crouch_m": 0})"));
+}
+
+TEST(Script, OneThatEndsInTheTPoseCanBePerformedAgain) {
+  const auto ends = [](const char* keys) {
+    return ParseScript(R"({"keys": )" + std::string(keys) + "}", "f")->EndsInTPose();
+  };
+  EXPECT_TRUE(ends(R"([{"seconds": 1, "bow_deg": 30}, {"seconds": 2, "bow_deg": 0}])"));
+  EXPECT_FALSE(ends(R"([{"seconds": 1}, {"seconds": 1, "both_raise_deg": -75}])"));
+  for (const std::string& name : BuiltInScriptNames()) {
+    EXPECT_TRUE(BuiltInScript(name)->EndsInTPose()) << name;
+  }
+}
+
 TEST(Course, BlendsWithoutAJumpAndMeetsEveryKey) {
   const auto script = ParseScript(
       R"({"keys": [{"seconds": 1, "bow_deg": 30}, {"seconds": 2, "bow_deg": 0}]})", "f");

@@ -158,6 +158,7 @@ TEST(Bvh, ErrorsSayFileLineAndWhatWasExpected) {
       {"", "expected HIERARCHY, found the end of the file"},
       {BvhWith(kArm, "ROOT", "BOOT"), "arm.bvh, line 2: expected ROOT"},
       {BvhWith(kArm, "OFFSET 10 0 0", "OFFSET 10 0"), "line 9: expected a number of OFFSET"},
+      {BvhWith(kArm, "OFFSET 10 0 0", "OFFSET 1e300 0 0"), "line 8: expected a number of OFFSET"},
       {BvhWith(kArm, "3 Zrotation", "3 Wrotation"), "expected a channel such as"},
       {BvhWith(kArm, "3 Zrotation Xrotation", "3 Zrotation Zrotation"), "stands twice"},
       {BvhWith(kArm, "6 Xposition Yposition", "5 Yposition"), "the root needs"},
@@ -166,7 +167,7 @@ TEST(Bvh, ErrorsSayFileLineAndWhatWasExpected) {
       {BvhWith(kArm, "Frames: 2", "Frames: 4000000000"), "too short"},
       {BvhWith(kArm, "0.0083333", "0"), "expected a frame time"},
       {BvhWith(kArm, "5 91 -7 0 0 90 90 0 0", "5 91 -7 0 0 90 90 0"),
-       "line 20: frame 2: expected number 9 of 9, found the end of the line"},
+       "line 20: frame 2: expected number 9 of 9 within +-1e9, found the end of the line"},
       {BvhWith(kArm, "5 91 -7", "5 91 nan"), "found 'nan'"},
       {BvhWith(kArm, "90 90 0 0", "90 90 0 0 1"), "more than the 9"},
   };

@@ -89,6 +89,23 @@ TEST(Load, AnUnlikelyUnitOfABvhFileIsAskedFor) {
   EXPECT_NEAR(read->motion.q(2, 1), 1, 1e-4);
 }
 
+TEST(Load, ARootThatJumpsIsAFaultOfTheRecording) {
+  motion::Motion motion{body::StandardPerson(1.75), 60, 0, {}};
+  motion.q = Eigen::MatrixXd::Zero(motion.skeleton.dof, 9);
+  motion.q.row(2).setConstant(1);
+  motion.q.row(0).tail(5).setConstant(1.5);  // 90 m/s.
+  const std::string path = testing::TempDir() + "jump.bvh";
+  std::ofstream(path) << motion::WriteBvh(motion);
+  EXPECT_TRUE(LoadMotion(path).ok()) << LoadMotion(path).error().message;
+  motion.q.row(0).tail(5).setConstant(1000);
+  std::ofstream(path) << motion::WriteBvh(motion);
+  const auto jump = LoadMotion(path);
+  ASSERT_FALSE(jump.ok());
+  EXPECT_EQ(jump.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(jump.error().message,
+              HasSubstr("jump.bvh: the root moves by 1e+03 m between frames 4 and 5 (0.067 s)"));
+}
+
 TEST(Load, WholeTurnsInAFileChangeNothing) {
   motion::Motion motion{body::StandardPerson(1.75), 60, 0, {}};
   motion.q.resize(motion.skeleton.dof, 30);

@@ -152,6 +152,17 @@ TEST(Driver, RunsUpToAPitAlthoughABendLiesBehindIt) {
   EXPECT_EQ(Runner(without).RunTo(18.5).gait, Gait::kWalk);
 }
 
+/// Nobody crosses a wide pit without a run-up.
+TEST(Driver, RunsUpToAPitWithABendAtItsFarEdge) {
+  stream::Track track = Straight({{20, false}, {1, true}, {20, false}});
+  track.segments[2].heading_rad = 0.5;
+  Ability ability = DirectAbility();
+  ability.turn_per_step_rad = DegreesToRadians(5);
+  Runner runner(track, ability);
+  EXPECT_EQ(runner.RunTo(17.5).gait, Gait::kRun);
+  EXPECT_EQ(runner.RunTo(19.9).gait, Gait::kJump);
+}
+
 TEST(Driver, DoesTheTaskAtTheMarkAndGoesOnWhenItIsDone) {
   Runner runner(StopAt20());
   runner.seen.trial.task = 0;

@@ -134,6 +134,15 @@ class Pose(unittest.TestCase):
         self.assertEqual(done.stdout, "")
         self.assertIn("13", done.stderr)
 
+    def test_refuses_a_take_that_trained_the_model_under_any_name(self):
+        with tempfile.TemporaryDirectory() as folder:
+            copy = pathlib.Path(folder) / "99_01.amc"
+            shutil.copy(DATA / "13_31.amc", copy)
+            done = run(EVAL, "pose", "--motion", copy, "--skeleton", DATA / "13_reconstructed.asf", "--model",
+                       self.models["pose"])
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("99_01.amc itself", done.stderr)
+
     def test_judges_a_persons_own_model_on_another_take_only(self):
         own = (EVAL, "pose", "--skeleton", DATA / "13_reconstructed.asf", "--model", self.models["pose"],
                "--same-person", "--no-baselines", "--json", "--motion")
