@@ -13,7 +13,7 @@ from harness import Stage, read_ticks
 # The camera stands 0.9 m in front of the hands and looks along -x of W: w, x, y, z of the turn.
 PLACE = {"position_W_m": (1.5, 0.0, 1.3), "rotation_WC": (0.5, -0.5, -0.5, 0.5), "rate_hz": 20}
 # A person who holds both hands out in front.
-MOTION = {"sway_mm": 3, "keys": [{"seconds": 0.7, "both_front_deg": 75}, {"seconds": 60}]}
+MOTION = {"sway_mm": 3, "keys": [{"seconds": 0.7, "both_front_deg": 75}, {"seconds": 60}, {"seconds": 0.7, "both_front_deg": 0}]}
 ROLES = {1: "left_hand", 2: "right_hand"}
 
 
@@ -27,7 +27,8 @@ def shown(led):
 def start_world(stage):
     """Moves in the fists of a person who stands still, and a FIFO with what the camera sees of them."""
     seen_by = stage.folder / "world.json"
-    spheres = [{"role": role, "colour_dn": [9, 90, 9]} for role in ROLES.values()]
+    # The lights of the Moves take the place of these colours.
+    spheres = [{"role": role, "colour_dn": colour} for role, colour in zip(ROLES.values(), ([9, 90, 9], [9, 9, 90]))]
     seen_by.write_text(json.dumps({**PLACE, "spheres": spheres}))
     fifo = stage.folder / "fifo"
     motion = stage.folder / "motion.json"

@@ -183,6 +183,8 @@ def main():
         subprocess.run([binaries / "footing-stream", "sample", "."], cwd=folder, check=True, env=environment)
         for protocol in ("study.json", "short-study.json", "latency.json"):
             shutil.copy(ROOT / "docs/examples" / protocol, folder)
+        for config in ("footingd.json", "sim.json"):
+            (folder / config).write_text("{}  // All defaults.\n")
         start_walk(stage)
         record(folder, environment, binaries, "walk.mcap", 4)
         stop_all(stage)
@@ -192,7 +194,7 @@ def main():
 
         def try_out(command):
             clear_outputs(folder, command)
-            if "--from walk.csv" in command:  # The search that writes it takes longer than this watches.
+            if "walk.csv" in command:  # The search that writes it takes longer than this watches.
                 shutil.copy(ROOT / "daemon/simulation/data/gaits/walk.csv", folder)
             problem = run(stage, command, environment, folder)
             if problem:

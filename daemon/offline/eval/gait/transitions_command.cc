@@ -125,7 +125,7 @@ void AddTransitionsCommand(CLI::App& app, Shared& shared) {
   command->footer(
       "Examples:\n"
       "  footing-eval transitions --from walk --to run --trials 20 --seed 1 --json\n"
-      "  footing-eval transitions --from walk --to run --trials 20 --gains my-gains.csv");
+      "  footing-eval transitions --from walk --to run --trials 20 --gains walk.csv");
   command->callback(
       [options, &shared] { shared.exit_code = RunTransitions(*options, shared.json); });
 }
