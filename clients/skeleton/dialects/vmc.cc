@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "clients/skeleton/joints/joint_set.h"
+#include "common/text/joined.h"
 #include "common/text/lines.h"
 
 namespace footing::skeleton {
@@ -49,7 +50,7 @@ constexpr Bone kChain[] = {
     {"RightToes", 19, std::nullopt, true},
 };
 
-/// Without one of them there is no skeleton.
+/// A skeleton needs all of them.
 constexpr std::size_t kNeeded[] = {0, 7, 11, 14, 17};
 constexpr std::size_t kToes[] = {20, 21};
 
@@ -159,10 +160,8 @@ std::string VmcPose::NoSkeleton() const {
     }
     break;
   }
-  std::string names;
-  for (const std::string& name : arrived_) names += (names.empty() ? "" : ", ") + name;
   return "VMC: no skeleton: " + why +
-         "; the first bones that arrived: " + (names.empty() ? "none" : names);
+         "; the first bones that arrived: " + (arrived_.empty() ? "none" : text::Joined(arrived_));
 }
 
 Skeleton VmcPose::Joints() const {

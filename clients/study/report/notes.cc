@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clients/study/report/measure_table.h"
+#include "common/text/joined.h"
 
 namespace footing::study::report {
 namespace {
@@ -11,19 +12,19 @@ namespace {
 /// The gait paper (section 8.1) names the mean time to failure and does not define it. With time
 /// over failures, none and one failure give the same value.
 std::string NoteOnCensoring(const Measure& measure, const plan::Protocol& protocol) {
-  std::string counts;
+  std::vector<std::string> counts;
   std::size_t censored = 0;
   for (const std::string& interface : InOrder(protocol)) {
     const std::size_t trials = measure.Of(interface).size();
     if (trials == 0) continue;
     censored += measure.censored(interface);
-    counts += (counts.empty() ? "" : ", ") + interface + " " +
-              std::to_string(measure.censored(interface)) + " of " + std::to_string(trials);
+    counts.push_back(interface + " " + std::to_string(measure.censored(interface)) + " of " +
+                     std::to_string(trials));
   }
   const std::string note =
       "A trial without failures is censored at its duration, the value of a trial with one "
       "failure. Censored trials: " +
-      counts +
+      text::Joined(counts) +
       ". With few failures this measures the time to completion rather than reliability, and a "
       "slower interface has the greater value. ";
   if (censored == measure.values.size()) {
@@ -36,14 +37,15 @@ std::string NoteOnCensoring(const Measure& measure, const plan::Protocol& protoc
 
 std::string NoteOnZeros(const Measure& measure, const plan::Protocol& protocol) {
   const Measure measured = Measured(measure);
-  std::string names;
+  std::vector<std::string> names;
   for (const std::string& interface : InOrder(protocol)) {
     if (measure.Of(interface).empty() || !measured.Of(interface).empty()) continue;
-    names += (names.empty() ? "" : ", ") + interface;
+    names.push_back(interface);
   }
   if (names.empty()) return "";
-  const std::string note = "Not compared, since it is zero for every participant: " + names +
-                           ". A command by stick or balance needs no motion of a controller.";
+  const std::string note =
+      "Not compared, since it is zero for every participant: " + text::Joined(names) +
+      ". A command by stick or balance needs no motion of a controller.";
   const bool control = !measured.Of(protocol.control).empty();
   return control ? note : note + " Without the control there is no comparison.";
 }
