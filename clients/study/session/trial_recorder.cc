@@ -21,11 +21,8 @@ constexpr double kCaughtUpS = 1;
 
 class TrialRecorder::Implementation {
  public:
-  Implementation(Console& console, std::string path, recording::RecordingWriter writer)
-      : path_(std::move(path)),
-        writer_(std::move(writer)),
-        flush_(console.io()),
-        io_(console.io()) {}
+  Implementation(Console& console, recording::RecordingWriter writer)
+      : writer_(std::move(writer)), flush_(console.io()), io_(console.io()) {}
 
   ~Implementation() {
     for (const auto& server : servers_) server->Stop();
@@ -91,7 +88,6 @@ class TrialRecorder::Implementation {
     return writer_.Finish();
   }
 
-  std::string path_;
   recording::RecordingWriter writer_;
   recording::ServerNames names_;
   std::vector<std::unique_ptr<recording::ServerRecorder>> servers_;
@@ -110,7 +106,7 @@ Result<std::unique_ptr<TrialRecorder>> TrialRecorder::Begin(Console& console, Op
   settings.library = "footing-study " + options.version;
   auto writer = recording::RecordingWriter::Create(options.path, settings);
   if (!writer) return writer.error();
-  auto own = std::make_unique<Implementation>(console, options.path, std::move(*writer));
+  auto own = std::make_unique<Implementation>(console, std::move(*writer));
   if (const auto done = own->Describe(options, marks); !done) return done.error();
   for (const transport::Address& address : options.addresses) own->Link(address);
   own->Start();
@@ -122,7 +118,8 @@ Result<void> TrialRecorder::AwaitFirst(Console& console) const {
   const Waited waited = console.RunUntil([&] { return own.Flowing(); }, kFirstTickS);
   if (waited == Waited::kInterrupted) return Interrupted();
   if (waited == Waited::kTimeUp) {
-    return NoDevice("nothing comes to record in " + own.path_ + "; are both servers running?");
+    return NoDevice("nothing comes to record in " + own.writer_.path() +
+                    "; are both servers running?");
   }
   return own.written_;
 }
