@@ -2,9 +2,11 @@
 
 Usage: check_words.py SOURCE_ROOT [--list] [--count]
 
-Three kinds of text are read. `text`: string literals of .h and .cc files, scripts, documentation
+Five kinds of text are read. `text`: string literals of .h and .cc files, scripts, documentation
 and the comments of .proto files. `comments`: comments of .h and .cc files. `names`: identifiers of
-.h and .cc files. RULES name the words and what to write in their place; words_exceptions.csv lists
+.h and .cc files. `pages`: prose of .md files, which must not use the words of PAGE_RULES either.
+`sentences`: the same prose, in which a sentence has at most LONGEST_SENTENCE words.
+RULES name the words and what to write in their place; words_exceptions.csv lists
 the phrases that may stay, with the reason; words_allowed.csv says how many findings of a kind a
 folder may still have (a folder that it does not list: none). That number only ever goes down.
 --list prints every finding; --count prints the numbers that words_allowed.csv would need.
@@ -32,6 +34,15 @@ RULES = [  # (words, what to write)
     (r"wishes|wished", "targets, requests"),
     (r"talk|talks|talked|talking|voice|voices", "message, text, prompt"),
 ]
+PAGE_RULES = [
+    (r"chose nothing", "was not used for tuning"),
+    (r"(?:left|leave|leaves|leaving) out", "held out, omitted, excluded"),
+    (r"nobody|somebody", "no person, a person; or name who"),
+    (r"aims?|aimed|aiming", "target, purpose; intend"),
+    (r"(?:that|those) of [^.|]{0,60}?(?:that|those) of", "the thing by its name"),
+    (r"(?-i:p)(?! ?[<>=]|[- ]values?\b)", "p value"),
+]
+LONGEST_SENTENCE = 35
 NAMES = re.compile(
     r"(?:(?<![a-z])(?:tell|told|telling|tellings|anew|carried|rehears\w*|room|shelf|shelves|book|talk|voice"
     r"|farewell|wishes|worn|obey|judge)(?![a-z])"
@@ -102,6 +113,42 @@ def pieces_of(path, text):
         yield "text", 1, text
 
 
+def prose_of(text):
+    """Yields (line, paragraph) of a page: without code, tables, headings, comments and marks."""
+    def blank(match):
+        return "\n" * match.group().count("\n")
+
+    text = re.sub(r"(?ms)^```.*?^```", blank, text)
+    text = re.sub(r"(?s)<!--.*?-->", blank, text)
+    text = re.sub(r"`[^`]*`", lambda match: "`code`" + blank(match), text)
+    text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", lambda match: match.group(1), text)
+    start, paragraph = 1, []
+    for number, line in enumerate([*text.split("\n"), ""], 1):
+        ends = not line.strip() or re.match(r"\s*(?:[|#>]|    )", line) or line.startswith("    ")
+        item = re.match(r"\s*(?:[-*]|\d+\.)\s+", line)
+        if (ends or item) and paragraph:
+            yield start, "\n".join(paragraph)
+            paragraph = []
+        if ends:
+            continue
+        if not paragraph:
+            start = number
+        paragraph.append(line[item.end():] if item else line)
+
+
+def long_sentences(path, text):
+    for line, paragraph in prose_of(text):
+        begin = 0
+        for end in [match.end() for match in re.finditer(r"[.!?][*_)\"'»]*(?=\s+[^a-z\s]|\s*$)", paragraph)] + [len(paragraph)]:
+            sentence = paragraph[begin:end]
+            words = [word for word in sentence.split() if re.search(r"\w", word)]
+            if len(words) > LONGEST_SENTENCE:
+                at = line + paragraph.count("\n", 0, begin + len(sentence) - len(sentence.lstrip()))
+                yield Finding("sentences", path, at, f"{len(words)} words", f"at most {LONGEST_SENTENCE}; one idea a sentence",
+                              " ".join(words[:8]) + " ...")
+            begin = end
+
+
 def files_of(root):
     for top in ("common", "daemon", "clients"):
         yield from (p for p in sorted((root / top).rglob("*")) if p.suffix in (".h", ".cc", ".py"))
@@ -127,7 +174,7 @@ def find_in(kind, path, line, text, exceptions):
                 yield Finding(kind, path, text.count("\n", 0, match.start()) + line, match.group(),
                               "a name of the field", match.group())
         return
-    for words, advice in RULES:
+    for words, advice in PAGE_RULES if kind == "pages" else RULES:
         pattern = r"(?<![\w/.-])(?:" + words.replace(" ", r"\s+") + r")(?![\w/-])"
         for match in re.finditer(pattern, text, re.I):
             before = text[max(0, match.start() - 12):match.start()]
@@ -144,6 +191,11 @@ def check_file(root, path, exceptions):
     found = []
     for kind, line, text in pieces_of(path, path.read_text()):
         found += find_in(kind, relative, line, text, exceptions)
+    if path.suffix == ".md":
+        page = path.read_text()
+        for line, paragraph in prose_of(page):
+            found += find_in("pages", relative, line, paragraph, exceptions)
+        found += long_sentences(relative, page)
     return found
 
 

@@ -49,6 +49,25 @@ class Words(unittest.TestCase):
     def test_a_proto_file_is_read_for_its_comments_only(self):
         self.assertEqual(found("bool told = 1;  // As told.\n", "proto/x.proto"), [("text", 1, "told")])
 
+    def test_prose_of_pages_has_words_of_its_own(self):
+        self.assertEqual(found("Clips that were\nleft out, and the p of a test; p < 0.05, a p value, `aim`.\n", "docs/x.md"),
+                         [("pages", 1, "left out"), ("pages", 2, "p")])
+        self.assertEqual(found('auto s = "left out";\n'), [])
+
+    def test_a_chain_of_that_of_is_found(self):
+        self.assertEqual([f[:2] for f in found("The error is that of the hand and those of the feet.\n", "docs/x.md")],
+                         [("pages", 1)])
+
+    def test_a_sentence_of_a_page_ends_within_35_words(self):
+        short, long = "Five words make a sentence. ", " ".join(["word"] * 36) + "."
+        self.assertEqual(found(short * 20, "docs/x.md"), [])
+        self.assertEqual(found(short + "\n" + long, "docs/x.md"), [("sentences", 2, "36 words")])
+
+    def test_tables_code_headings_and_items_are_no_sentence(self):
+        words = " ".join(["word"] * 30)
+        self.assertEqual(found(f"# {words}\n{words}:\n- {words}\n- {words}\n\n| {words} {words} |\n\n    {words} {words}\n"
+                               f"```\n{words} {words}\n```\n", "docs/x.md"), [])
+
     def test_an_exception_holds_for_its_path_only(self):
         text = "Norman, The Book of Signals\n"
         self.assertEqual(found(text, "docs/x.md", [("docs/", "The Book of Signals")]), [])
