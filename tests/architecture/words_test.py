@@ -51,7 +51,7 @@ class Words(unittest.TestCase):
 
     def test_prose_of_pages_has_words_of_its_own(self):
         self.assertEqual(found("Clips that were\nleft out, and the p of a test; p < 0.05, a p value, `aim`.\n", "docs/x.md"),
-                         [("pages", 1, "left out"), ("pages", 2, "p")])
+                         [("pages", 2, "left out"), ("pages", 2, "p")])
         self.assertEqual(found('auto s = "left out";\n'), [])
 
     def test_a_chain_of_that_of_is_found(self):
@@ -59,7 +59,7 @@ class Words(unittest.TestCase):
                          [("pages", 1)])
 
     def test_a_sentence_of_a_page_ends_within_35_words(self):
-        short, long = "Five words make a sentence. ", " ".join(["word"] * 36) + "."
+        short, long = "Five words make a sentence. ", " ".join(["Word"] * 36) + "."
         self.assertEqual(found(short * 20, "docs/x.md"), [])
         self.assertEqual(found(short + "\n" + long, "docs/x.md"), [("sentences", 2, "36 words")])
 
