@@ -119,6 +119,7 @@ def prose_of(text):
         return "\n" * match.group().count("\n")
 
     text = re.sub(r"(?ms)^```.*?^```", blank, text)
+    text = re.sub(r"(?s)<!-- measurements: .*?<!-- end of measurements -->", blank, text)  # Drawn from tables.
     text = re.sub(r"(?s)<!--.*?-->", blank, text)
     text = re.sub(r"`[^`]*`", lambda match: "`code`" + blank(match), text)
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", lambda match: match.group(1), text)
