@@ -1,4 +1,4 @@
-"""Fails when a relative link or a picture of README.md, docs/ or systemd/ leads nowhere.
+"""Fails when a relative link or a picture of the top folder, docs/ or systemd/ leads nowhere.
 
 Usage: check_links.py SOURCE_ROOT
 
@@ -29,7 +29,7 @@ def links_of(page):
 
 
 def check(root):
-    pages = [root / "README.md", *sorted((root / "docs").rglob("*.md")), root / "systemd/README.md"]
+    pages = [*sorted(root.glob("*.md")), *sorted((root / "docs").rglob("*.md")), root / "systemd/README.md"]
     pages = [page for page in pages if page.exists()]
     errors, links = [], {}
     for page in pages:

@@ -10,7 +10,9 @@ import subprocess
 import sys
 
 FOLDERS = {".ci", "clients", "common", "daemon", "docs", "proto", "scripts", "systemd", "tests"}
-FILES = {".clang-format", ".clang-tidy", ".gitignore", "CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md"}
+# Of the pages, these are what every project carries; all others stand in docs/.
+FILES = {".clang-format", ".clang-tidy", ".gitignore", "CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md",
+         "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "SECURITY.md"}
 
 
 def entries(root):

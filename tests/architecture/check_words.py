@@ -157,7 +157,7 @@ def files_of(root):
     yield from (p for p in sorted((root / "scripts").iterdir()) if p.is_file())
     yield from sorted((root / "docs").rglob("*.md"))
     yield from sorted((root / "docs").rglob("*.py"))
-    yield from (p for p in (root / "README.md", root / "systemd/README.md") if p.exists())
+    yield from (p for p in (*sorted(root.glob("*.md")), root / "systemd/README.md") if p.exists())
 
 
 def read_exceptions(path):

@@ -33,6 +33,7 @@ SECONDS_TO_STOP = 60
 NOT_HERE = {
     r"^footing-ctl (pair|setup|assign|acceptance|tare|layout .*--check)": "asks a person; scenarios setup_* run them",
     r"--calibrate-camera": "asks a person; tests/clients/view/pose_calibration_test.cc has one",
+    r"layout --preset single|stand/footingd_boards": "needs one board alone, with a person on it",
     r"^footing-ctl led (00:|head)": "needs that device",
     r"^footing-ctl interface leg": "needs remotes on the legs; scenario joystick_line changes interfaces",
     r"^footing-ctl trial withdraw": "needs a failure; scenario trial runs it",
