@@ -40,7 +40,8 @@ def check_units(build, prefix):
 
 def check_files(prefix):
     for name in ("share/footing/biped.json", "share/footing/proto/footing/v1/session.proto",
-                 "share/doc/footing/README.md", "share/doc/footing/docs/protocol.md",
+                 "share/doc/footing/README.md", "share/doc/footing/docs/README.md", "share/doc/footing/docs/protocol.md",
+                 "share/doc/footing/CHANGELOG.md", "share/doc/footing/SECURITY.md", "share/doc/footing/CITATION.cff",
                  "share/doc/footing/docs/examples/study.json", "share/doc/footing/docs/examples/short-study.json",
                  "share/man/man8/footingd.8.gz", "share/man/man1/footing-stream.1.gz",
                  "share/bash-completion/completions/footing",
