@@ -1,7 +1,10 @@
-"""Every script for people explains itself with --help, and refuses an option that it does not have.
+"""Every script for people explains itself with --help, and refuses an option that it does not have; figures of pages.
 
 Usage: scripts_test.py SOURCE_ROOT
 """
+import csv
+import importlib.machinery
+import importlib.util
 import os
 import pathlib
 import subprocess
@@ -59,6 +62,35 @@ echo "apt-get $*" >&2
         self.assertEqual(said[0], "Installing 1 packages: some-package")
         self.assertLess(said.index("Need to get 9 MB of archives."),
                         next(i for i, line in enumerate(said) if " install -y " in line), said)
+
+
+class Figures(unittest.TestCase):
+    """What scripts/measurements draws into a sentence, from a table of its own."""
+
+    def setUp(self):
+        sys.dont_write_bytecode = True
+        loader = importlib.machinery.SourceFileLoader("measurements", str(ROOT / "scripts/measurements"))
+        self.measurements = importlib.util.module_from_spec(importlib.util.spec_from_loader("measurements", loader))
+        loader.exec_module(self.measurements)
+        folder = tempfile.TemporaryDirectory(prefix="footing-figures.")
+        self.addCleanup(folder.cleanup)
+        self.measurements.FOLDER = pathlib.Path(folder.name)
+        with open(self.measurements.FOLDER / "t.csv", "w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows([self.measurements.COLUMNS, ["error", "5.2; 7.2", "cm", "", "", "2026-11-28", "", ""]])
+
+    def test_a_figure_is_the_value_of_its_row_or_one_part_of_it(self):
+        for name, value in (("error", "5.2; 7.2"), ("error [1]", "5.2"), ("error [2]", "7.2")):
+            drawn = self.measurements.redraw(f"It is <!-- figure: t: {name} -->0<!-- --> cm.")
+            self.assertEqual(drawn, f"It is <!-- figure: t: {name} -->{value}<!-- --> cm.")
+        for name in ("error [3]", "other"):
+            with self.assertRaises(SystemExit):
+                self.measurements.redraw(f"It is <!-- figure: t: {name} -->0<!-- --> cm.")
+
+    def test_a_comment_that_markdown_would_show_or_end_a_paragraph_with_is_found(self):
+        for text in ("of\n<!-- figure: t: error -->0<!-- -->", "- <!-- figure: t: error -->0<!-- -->",
+                     "is <!-- figure: t: test --fast -->0<!-- -->"):
+            self.assertTrue(self.measurements.BROKEN.search(text), text)
+        self.assertFalse(self.measurements.BROKEN.search("is <!-- figure: t: error -->0<!-- --> and <!-- figure: t: x -->0"))
 
 
 if __name__ == "__main__":
