@@ -63,6 +63,16 @@ echo "apt-get $*" >&2
         self.assertLess(said.index("Need to get 9 MB of archives."),
                         next(i for i, line in enumerate(said) if " install -y " in line), said)
 
+    def test_a_build_in_a_terminal_says_how_long_it_still_takes(self):
+        build = (ROOT / "scripts/build").read_text()
+        shown = build[build.index("show_time_left() {"):build.index("\n}\n", build.index("show_time_left() {")) + 3]
+        lines = "[0/12, 0.0 s] first\n[5/12, 100.5 s] second\nerror: of a compiler\n"
+        done = subprocess.run(["bash", "-c", shown + "show_time_left"], input=lines, capture_output=True, text=True,
+                              timeout=60, check=False)
+        self.assertEqual(done.returncode, 0, done)
+        self.assertIn("[5/12, about 3 min left] second", done.stdout)  # 7 steps of 20 s.
+        self.assertIn("error: of a compiler\n", done.stdout)
+
 
 class Figures(unittest.TestCase):
     """What scripts/measurements draws into a sentence, from a table of its own."""
