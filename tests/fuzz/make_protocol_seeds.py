@@ -17,7 +17,7 @@ def string(data: bytes) -> bytes:
 def examples() -> list[tuple[str, bytes]]:
     """Name and bytes of every frame in the protocol's page."""
     found = []
-    for text in re.findall(r"```frame\n(.*?)\n=\n", PROTOCOL.read_text(), re.S):
+    for text in re.findall(r"```frame\n(.*?)\n```", PROTOCOL.read_text(), re.S):
         lines = text.splitlines()
         data = bytes.fromhex("".join(line.split("#")[0] for line in lines))
         found.append((lines[1].split("#")[1].split(",")[0].strip(), data))

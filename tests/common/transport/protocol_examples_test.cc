@@ -12,7 +12,8 @@
 #include "footing/v1/session.pb.h"
 
 /// The examples of docs/protocol.md: fenced blocks of the language "frame" (or "device-frame") with
-/// hex bytes, comments after #, a line "=", and the message in protobuf's text form.
+/// hex bytes. The comments after # are the message in protobuf's text form: two further spaces a
+/// level, "name, N bytes" for a message.
 namespace footing {
 namespace {
 
@@ -20,6 +21,7 @@ struct Example {
   int line = 0;
   std::string bytes;
   std::string text;
+  std::vector<std::size_t> open;  // Levels of the messages that the text has begun.
 };
 
 /// The bytes of one line of hex, without its comment.
@@ -32,24 +34,43 @@ std::string BytesOf(const std::string& line) {
   return bytes;
 }
 
+/// Ends the messages at `level` and deeper.
+void Close(Example& example, std::size_t level) {
+  for (; !example.open.empty() && example.open.back() >= level; example.open.pop_back()) {
+    example.text += "}\n";
+  }
+}
+
+void AddComment(Example& example, const std::string& line) {
+  const std::size_t hash = line.find('#');
+  if (hash == std::string::npos) return;
+  const std::size_t word = line.find_first_not_of(' ', hash + 1);
+  Close(example, word - hash);
+  const std::string comment = line.substr(word);
+  const std::size_t comma = comment.find(", ");
+  const bool begins = comment.find(':') == std::string::npos && comma != std::string::npos;
+  example.text += begins ? comment.substr(0, comma) + " {\n" : comment + "\n";
+  if (begins) example.open.push_back(word - hash);
+}
+
 std::vector<Example> ExamplesOf(const std::string& language) {
   std::ifstream file(FOOTING_SOURCE_DIR "/docs/protocol.md");
   std::vector<Example> examples;
-  enum { kOutside, kHex, kText } where = kOutside;
+  bool inside = false;
   int number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
     if (line == "```" + language) {
-      where = kHex;
-      examples.push_back({number, "", ""});
+      inside = true;
+      examples.push_back({number, "", "", {}});
     } else if (line.rfind("```", 0) == 0) {
-      where = kOutside;
-    } else if (where == kHex && line == "=") {
-      where = kText;
-    } else if (where == kHex) {
+      if (inside) Close(examples.back(), 0);
+      inside = false;
+    } else if (inside) {
+      const bool length =
+          examples.back().bytes.empty();  // The first line is the frame's length, not a field.
       examples.back().bytes += BytesOf(line);
-    } else if (where == kText) {
-      examples.back().text += line + "\n";
+      if (!length) AddComment(examples.back(), line);
     }
   }
   return examples;
@@ -74,7 +95,7 @@ Message Check(const Example& example) {
   return decoded;
 }
 
-TEST(ProtocolExamples, BytesAndTextOfEveryMessageAgree) {
+TEST(ProtocolExamples, BytesAndCommentsOfEveryMessageAgree) {
   std::set<int> shown;
   for (const Example& example : ExamplesOf("frame")) {
     shown.insert(static_cast<int>(Check<v1::Envelope>(example).body_case()));
