@@ -23,7 +23,7 @@ import time
 from harness import Stage
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "systemd/README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/*.md"))]
+PAGES = ["README.md", "systemd/README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/**/*.md"))]
 PROGRAMS = ["footingd", "footing-sim", "footing-stream", "footing-view", "footing-log", "footing-ctl", "footing-eval",
             "footing-train", "footing-tune", "footing-bench", "footing-study", "footing-game", "footing-skeleton",
             "footing-camera", "footing-relay"]

@@ -1,8 +1,8 @@
 """The pose engine against its aims: footing-eval pose on people whom no model has seen, and on measured plates.
 
 Part of `scripts/test --long pose`; takes some twenty minutes, ten of them training. A row that misses its aim is
-printed as "missed"; docs/pose.md and docs/pose-reports.md say why. A row beyond its limit, which lies a little
-above what those pages report, is printed as "WORSE", and the table ends with 1. It ends with 77 (skipped) without
+printed as "missed"; docs/evaluation/pose.md says why. A row beyond its limit, which lies a little above
+what that page reports, is printed as "WORSE", and the table ends with 1. It ends with 77 (skipped) without
 recordings (FOOTING_TEST_DATA).
 
 Usage: pose_table.py BINARY_FOLDER [--folder DIR] [--only WORD] [--jobs 2]
@@ -166,7 +166,7 @@ def plates_rows(bench):
     return rows
 
 
-# A little above what docs/pose.md reports of these people.
+# A little above what docs/evaluation/pose.md reports of these people.
 LIMITS = {
     "CMU 13": {"mpjpe": 6.2, "p95": 12.6, "gain": 25, "feet": 4.6, "paper": 14.6, "than_paper": 2.2, "weight": 10,
                "landing": 3.1, "skate": 2, "invalid": 2, "nees": 0, "hip": 20.7, "knee": 15.5, "elbow": 13,

@@ -8,7 +8,8 @@
 namespace footing::virtual_sensors {
 namespace {
 
-// Chosen on two drop jumps, two walks and a rise from a chair of one person (docs/momentum.md).
+// Chosen on two drop jumps, two walks and a rise from a chair of one person
+// (docs/evaluation/momentum.md).
 constexpr double kSmoothForceHz = 8;
 constexpr double kHardPoseHz = 10, kHardForceHz = 12;
 constexpr double kHardShare = 0.05;  // Of the weight: by which both forces differ at an impact.

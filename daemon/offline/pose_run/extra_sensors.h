@@ -14,7 +14,7 @@
 #include "daemon/simulation/arms/hand_attitude.h"
 #include "daemon/simulation/reconstruction/inputs.h"
 
-/// What a lab may add to boards and hands (docs/pose-reports.md). Their random numbers are their
+/// What a lab may add to boards and hands (docs/evaluation/pose.md). Their random numbers are their
 /// own: a run with them has the boards and hands of the run without.
 namespace footing::pose_run {
 

@@ -18,7 +18,7 @@ struct OwnOptions {
   std::vector<std::string> motions;
   std::vector<std::string> skeletons;  ///< Of AMC: none, one for all, or one a motion.
   std::string rig;
-  double share = 0.7;  ///< Of all seconds; chosen on CMU 13_30 (docs/models.md).
+  double share = 0.7;  ///< Of all seconds; chosen on CMU 13_30 (docs/evaluation/models.md).
 };
 
 void AddOwnOptions(CLI::App& command, OwnOptions& options);

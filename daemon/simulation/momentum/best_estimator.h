@@ -16,7 +16,7 @@
 
 namespace footing::momentum {
 
-/// Priors of the two horizontal axes, from recorded motion (docs/momentum.md, "Constants").
+/// Priors of the two horizontal axes, from recorded motion (docs/momentum.md, "Horizontal COM").
 HorizontalPrior ForwardPrior();
 HorizontalPrior LateralPrior();
 

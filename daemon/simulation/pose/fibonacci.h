@@ -18,7 +18,7 @@ struct FibonacciOptions {
   double span = 0.3;
   /// No coefficient is searched further from 0, in its standard deviations: 95 of 100 poses are
   /// within. Where twice as much was allowed, coefficients that little holds wandered to where no
-  /// pose is and stayed there, since each search begins from the last (docs/pose-reports.md).
+  /// pose is and stayed there, since each search begins from the last (docs/evaluation/pose.md).
   double reach = 2;
   double frame_s = 1.0 / 60;
 };

@@ -1,7 +1,7 @@
 // The finder against the methods of other trackers, in the same rendered frames.
 //
 // FOOTING_PEER_FRAMES=100 compares that many frames at seven distances and prints the table of
-// docs/camera.md; otherwise two frames at three distances.
+// docs/evaluation/camera.md; otherwise two frames at three distances.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -21,7 +21,7 @@ constexpr double kTimeSdS = 0.001;  // Of an exposure.
 constexpr double kSettledS = 8;     // The T-pose and the way out of it do not count.
 constexpr double kRestMps = 0.05;
 
-/// docs/camera.md: lateral and depth by distance, one frame.
+/// docs/evaluation/camera.md: lateral and depth by distance, one frame.
 Eigen::Matrix3d CameraCovariance(const Eigen::Vector3d& p_W_m) {
   const Eigen::Vector3d sight = p_W_m - kCamera_W_m;
   const double distance_m = sight.norm();

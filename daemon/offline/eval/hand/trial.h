@@ -18,8 +18,8 @@ struct HandTrialOptions {
 };
 
 /// Both hands of a motion before a camera 2.2 m ahead of the person, with errors and delays as
-/// docs/camera.md has measured them: errors at each tick of reconstruction::HandTrack, from the
-/// camera alone, and of inertial::Track.
+/// docs/evaluation/camera.md has measured them: errors at each tick of reconstruction::HandTrack,
+/// from the camera alone, and of inertial::Track.
 nlohmann::ordered_json RunHandTrial(const pose_run::ArmRun& run, const HandTrialOptions& options);
 
 }  // namespace footing::eval
