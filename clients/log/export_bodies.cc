@@ -16,6 +16,7 @@
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
+#include "common/virtual/joint_angles/joint_angles.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/c3d.h"
 #include "common/virtual/motion/trc.h"
@@ -56,7 +57,7 @@ struct NamedText {
 Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
                                         const std::vector<FootForces>& forces,
                                         const std::string& name) {
-  Result<motion::Table> angles = JointAngles(motion);
+  Result<motion::Table> angles = joint_angles::JointAngles(motion);
   if (!angles) return angles.error();
   angles->name = name + ".mot";
   motion::Table table = ForceTable(forces, motion.rate_hz);

@@ -8,6 +8,7 @@
 #include "daemon/offline/eval/pose/breakdown.h"
 #include "daemon/offline/eval/pose/com_score.h"
 #include "daemon/offline/eval/pose/foot_score.h"
+#include "daemon/offline/eval/scores/angle_score.h"
 #include "daemon/offline/eval/scores/pose_metrics.h"
 #include "daemon/offline/eval/scores/roughness.h"
 #include "daemon/offline/timing/momentum_cost.h"
@@ -66,12 +67,18 @@ class SmoothnessScore {
 class TrialScore {
  public:
   TrialScore(const pose_run::PoseRun& run, std::size_t lag)
-      : run_(run), lag_(lag), pose_(run.body), feet_(run, lag), breakdown_(run) {}
+      : run_(run),
+        lag_(lag),
+        pose_(run.body),
+        angles_(run.body),
+        feet_(run, lag),
+        breakdown_(run) {}
 
   /// The output that came with frame `i`.
   void Add(const reconstruction::Output& output, std::size_t i) {
     const pose_run::Frame& truth = run_.frames[i - lag_];
     pose_.Add(output.q, truth.q);
+    angles_.Add(output.q, truth.q, output.valid);
     com_.Add(run_.body, output, pose_, truth);
     feet_.Add(output, pose_, i);
     smoothness_.Add(run_.body.landmarks, output, pose_, truth);
@@ -85,8 +92,9 @@ class TrialScore {
     finite_ = finite_ && output.q.allFinite();
   }
 
-  ordered_json Json() const {
+  Result<ordered_json> Json() const {
     ordered_json json = pose_.Json();
+    if (const Result<void> written = angles_.WriteTo(json); !written) return written.error();
     com_.WriteTo(json);
     smoothness_.WriteTo(json);
     feet_.WriteTo(json);
@@ -123,6 +131,7 @@ class TrialScore {
   const pose_run::PoseRun& run_;
   const std::size_t lag_;
   PoseScore pose_;
+  AngleScore angles_;
   ComScore com_;
   SmoothnessScore smoothness_;
   FootScore feet_;
@@ -163,7 +172,9 @@ Result<ordered_json> RunPoseTrial(const pose_run::PoseRun& run,
                        {"mass_kg", made->output().mass_kg},
                        {"lag_ms", 1000 * made->output().lag_s},
                        {"resets", made->output().resets}};
-  json.update(score.Json());
+  const Result<ordered_json> figures = score.Json();
+  if (!figures) return figures.error();
+  json.update(*figures);
   const double unit_us = timing::MomentumCostUs(run.body, run.frames.front().q);
   json["solve_us_p50"] = solve_us.Quantile(0.5);
   json["solve_us_p99"] = solve_us.Quantile(0.99);
