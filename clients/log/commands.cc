@@ -239,7 +239,8 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   command
       ->add_option("--out", *folder,
                    "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: "
-                   "two); with bids the data set, created if it does not exist")
+                   "two; beside them the stated errors of the angles); with bids the data set, "
+                   "created if it does not exist")
       ->required();
   command->add_option("--subject", of_bids->subject,
                       "With bids: label of the subject, letters and digits (default 01)");

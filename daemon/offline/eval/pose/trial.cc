@@ -104,11 +104,11 @@ class TrialScore {
     json["misfit_p95"] = misfit_.Quantile(0.95);
     json["invalid_frames"] = invalid_;
     json["valid_fraction"] = 1 - static_cast<double>(invalid_) / static_cast<double>(frames_);
-    json["not_valid_for"] = {{"no_loads", no_loads_},
-                             {"weight_elsewhere", weight_elsewhere_},
-                             {"height", height_},
-                             {"step", step_},
-                             {"misfit", misfit_count_}};
+    json["not_valid_for"] = {{"no_loads", causes_.no_loads},
+                             {"weight_elsewhere", causes_.weight_elsewhere},
+                             {"height", causes_.height},
+                             {"step", causes_.step},
+                             {"misfit", causes_.misfit}};
     json["longest_invalid_s"] = static_cast<double>(longest_invalid_) / run_.rate_hz;
     json["finite"] = finite_;
     return json;
@@ -121,11 +121,11 @@ class TrialScore {
     longest_invalid_ = std::max(longest_invalid_, invalid_since_);
     if (output.valid) return;
     ++invalid_;
-    ++(!output.momentum.valid          ? no_loads_
-       : !output.momentum.whole_weight ? weight_elsewhere_
-       : !output.momentum.trusted      ? height_
-       : output.momentum.stepped       ? step_
-                                       : misfit_count_);
+    ++(!output.momentum.valid          ? causes_.no_loads
+       : !output.momentum.whole_weight ? causes_.weight_elsewhere
+       : !output.momentum.trusted      ? causes_.height
+       : output.momentum.stepped       ? causes_.step
+                                       : causes_.misfit);
   }
 
   const pose_run::PoseRun& run_;
@@ -140,8 +140,10 @@ class TrialScore {
   Spread misfit_;
   std::size_t frames_ = 0, invalid_ = 0;
   std::size_t invalid_since_ = 0, longest_invalid_ = 0;  ///< Frames in a row.
-  /// Causes.
-  std::size_t no_loads_ = 0, weight_elsewhere_ = 0, height_ = 0, step_ = 0, misfit_count_ = 0;
+  /// Frames that are not valid, by their cause.
+  struct {
+    std::size_t no_loads = 0, weight_elsewhere = 0, height = 0, step = 0, misfit = 0;
+  } causes_;
   bool finite_ = true;
 };
 
