@@ -10,8 +10,8 @@ namespace footing::body {
 
 /// Standard deviation of an angle of a reconstructed body: the RMS error on people who trained no
 /// model, in the group of clips where it is largest, in whole degrees above
-/// (docs/measurements/pose-angles.csv). Errors are not independent from frame to frame: most of
-/// them are the same through a whole squat. With boards alone they are larger.
+/// (docs/measurements/pose-angles.csv). Errors are not independent from frame to frame: the mean
+/// error of a clip is a great part of them. They were measured with tracked hands.
 struct AngleDeviation {
   std::string_view name;
   double upright_deg = 0;
