@@ -14,6 +14,7 @@
 #include "clients/log/export_xdf.h"
 #include "clients/log/output_folder.h"
 #include "clients/log/record.h"
+#include "common/body/angle_deviation.h"
 #include "common/cli/cli.h"
 #include "common/recording/repair.h"
 #include "common/text/json_text.h"
@@ -95,7 +96,14 @@ Result<ordered_json> RunBodies(const std::string& file, const std::string& forma
                             {"frames", motion.frames},
                             {"invalid_frames", motion.invalid_frames},
                             {"rate_hz", motion.rate_hz},
-                            {"begin_s", motion.begin_s}});
+                            {"begin_s", motion.begin_s},
+                            {"angle_errors", motion.angle_errors}});
+  }
+  out["angle_sd_source"] = body::AngleDeviationSource();
+  out["angle_sd"] = ordered_json::array();
+  for (const body::AngleDeviation& one : body::CoordinateDeviations()) {
+    out["angle_sd"].push_back(
+        {{"coordinate", one.name}, {"upright_deg", one.upright_deg}, {"bent_deg", one.bent_deg}});
   }
   return out;
 }
@@ -231,7 +239,8 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   command
       ->add_option("--out", *folder,
                    "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: "
-                   "two); with bids the data set, created if it does not exist")
+                   "two; beside them the stated errors of the angles); with bids the data set, "
+                   "created if it does not exist")
       ->required();
   command->add_option("--subject", of_bids->subject,
                       "With bids: label of the subject, letters and digits (default 01)");

@@ -12,10 +12,14 @@
 #include "clients/log/motion_gatherer.h"
 #include "clients/log/opensim.h"
 #include "clients/log/output_folder.h"
+#include "common/body/angle_deviation.h"
 #include "common/body/kinematics.h"
+#include "common/config/data_file.h"
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
+#include "common/text/number.h"
+#include "common/virtual/joint_angles/joint_angles.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/c3d.h"
 #include "common/virtual/motion/trc.h"
@@ -51,18 +55,79 @@ namespace {
 struct NamedText {
   std::string name;
   std::string text;
+  bool is_note = false;  ///< Says something about the other files, and has no motion of its own.
 };
 
+/// The stated errors of each coordinate.
+std::string ErrorsCsv() {
+  std::string text = "coordinate,sd_upright_deg,sd_bent_deg\n";
+  for (const body::AngleDeviation& one : body::CoordinateDeviations()) {
+    text += std::string(one.name) + ",";
+    text::AppendShortest(text, one.upright_deg);
+    text += ",";
+    text::AppendShortest(text, one.bent_deg);
+    text += "\n";
+  }
+  return text;
+}
+
+/// A frame that is not valid says nothing about an angle: that of any direction, 360 / sqrt(12).
+constexpr double kUnknownDeg = 103.923;
+
+/// The stated standard deviations of the columns of `angles` that are angles, at the same times.
+motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool>& valid) {
+  motion::Table table;
+  table.in_degrees = true;
+  std::vector<Eigen::Index> columns;
+  std::vector<body::AngleDeviation> deviations;
+  for (std::size_t i = 0; i < angles.columns.size(); ++i) {
+    const auto deviation = body::CoordinateDeviation(angles.columns[i]);
+    if (!deviation && angles.columns[i] != "time") continue;
+    table.columns.push_back(angles.columns[i]);
+    columns.push_back(static_cast<Eigen::Index>(i));
+    deviations.push_back(deviation.value_or(body::AngleDeviation()));
+  }
+  const int left = motion::FindColumn(angles, "knee_angle_l");
+  const int right = motion::FindColumn(angles, "knee_angle_r");
+  table.values.setZero(angles.values.rows(), static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index row = 0; row < angles.values.rows(); ++row) {
+    const bool bent =
+        (angles.values(row, left) + angles.values(row, right)) / 2 >= body::kBentKneeDeg;
+    table.values(row, 0) = angles.values(row, 0);
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+      table.values(row, static_cast<Eigen::Index>(i)) = !valid[static_cast<std::size_t>(row)]
+                                                            ? kUnknownDeg
+                                                        : bent ? deviations[i].bent_deg
+                                                               : deviations[i].upright_deg;
+    }
+  }
+  return table;
+}
+
+/// A table of OpenSim with a line for people in its header, which readers pass over.
+std::string WithNote(std::string table, const std::string& note) {
+  const std::size_t end = table.find("endheader\n");
+  FOOTING_CHECK(end != std::string::npos);
+  return table.insert(end, note + "\n");
+}
+
 Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
+                                        const std::vector<bool>& valid,
                                         const std::vector<FootForces>& forces,
                                         const std::string& name) {
-  Result<motion::Table> angles = JointAngles(motion);
+  Result<motion::Table> angles = joint_angles::JointAngles(motion);
   if (!angles) return angles.error();
   angles->name = name + ".mot";
+  motion::Table deviations = DeviationTable(*angles, valid);
+  deviations.name = name + "_sd.sto";
+  const std::string source(body::AngleDeviationSource());
   motion::Table table = ForceTable(forces, motion.rate_hz);
   table.name = name + "_grf.mot";
-  return std::vector<NamedText>{{angles->name, motion::WriteTable(*angles)},
-                                {table.name, motion::WriteTable(table)}};
+  return std::vector<NamedText>{
+      {angles->name, WithNote(motion::WriteTable(*angles),
+                              "Angles are estimates: " + deviations.name + " has their " + source)},
+      {table.name, motion::WriteTable(table)},
+      {deviations.name, WithNote(motion::WriteTable(deviations), source), true}};
 }
 
 /// A motion, and which of its frames are valid.
@@ -96,7 +161,7 @@ Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const Gat
   }
   const auto forces = gatherer.Forces();
   if (!forces) return forces.error();
-  if (format == BodyFormat::kMot) return MotTexts(motion, *forces, name);
+  if (format == BodyFormat::kMot) return MotTexts(motion, valid, *forces, name);
   const auto c3d = motion::WriteC3d(ToC3d(motion, valid, *forces));
   if (!c3d) return c3d.error();
   return std::vector<NamedText>{{name + ".c3d", *c3d}};
@@ -191,18 +256,26 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
     const auto gathered = Gather(gatherer);
     if (!gathered) return InvalidData(recording + ": " + gathered.error().message);
     const std::string code = gatherer.subject().empty() ? "" : "_" + gatherer.subject();
-    const auto texts =
-        Written(gatherer, *gathered, format, "pose_" + std::to_string(++people) + code);
+    const std::string name = "pose_" + std::to_string(++people) + code;
+    auto texts = Written(gatherer, *gathered, format, name);
     if (!texts) return InvalidData(recording + ": " + texts.error().message);
+    texts->push_back({name + "_errors.csv", ErrorsCsv(), true});
+    const std::string errors = folder + "/" + texts->back().name;
     for (const NamedText& one : *texts) {
       const std::string path = folder + "/" + one.name;
+      if (one.is_note) {  // The export of another format may have written it.
+        const auto old = config::ReadTextFile(path);
+        if (old && *old == one.text) continue;
+      }
       Result<recording::OutputFile> out = recording::OutputFile::Create(path, replace);
       if (!out) return out.error();
       if (const auto written = out->Write(one.text); !written) return written.error();
+      if (one.is_note) continue;
       exported.push_back(
           {path, gatherer.subject(), gathered->valid.size(), gathered->invalid_frames(),
            gathered->motion.rate_hz,
-           1e-9 * static_cast<double>(gatherer.begin_ns() - walker.first_ns()) - gatherer.lag_s()});
+           1e-9 * static_cast<double>(gatherer.begin_ns() - walker.first_ns()) - gatherer.lag_s(),
+           errors});
     }
   }
   return exported;

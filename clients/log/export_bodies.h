@@ -17,7 +17,8 @@ struct ExportedMotion {
   std::uint64_t frames = 0;
   std::uint64_t invalid_frames = 0;  ///< Of `frames`: the engine reported them as not valid.
   double rate_hz = 0;
-  double begin_s = 0;  ///< Its first frame, from the recording's first message on.
+  double begin_s = 0;        ///< Its first frame, from the recording's first message on.
+  std::string angle_errors;  ///< The file with the stated errors of this person's angles.
 };
 
 /// The joints of every frame, in the axes of TRC files (OpenSim: x ahead, y up, z right), from 0 s.
@@ -34,6 +35,9 @@ enum class BodyFormat {
 /// Writes a file for each subject of a recording of the pose engine into `folder`:
 /// "pose_1_p07.bvh", ...; of kMot "pose_1_p07.mot" and "pose_1_p07_grf.mot". A recording without
 /// one is InvalidData; an existing file is a usage error, unless `replace`.
+///
+/// Beside them stand the stated standard deviations of the angles: "pose_1_p07_errors.csv" for each
+/// coordinate, and with kMot "pose_1_p07_sd.sto" with the columns and times of the angles.
 ///
 /// Where the pose is not valid, the places of joints have a gap; rotations and angles, whose files
 /// cannot have one, keep the pose.

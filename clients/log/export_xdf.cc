@@ -165,6 +165,7 @@ class XdfExporter {
     // Two rigs have devices of one role.
     if (!names_.insert(stream.name).second) stream.name += "_" + std::to_string(key.device);
     stream.source_id = stream.name;
+    stream.note = tables_.notes().DeviationNote(topic.topic, topic.table->row_type());
     if (!stream.channels.empty()) xdf::AppendHeader(stream, out_);
     return at->second;
   }

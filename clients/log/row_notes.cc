@@ -6,9 +6,12 @@
 #include <charconv>
 #include <cstdio>
 
+#include "common/body/angle_deviation.h"
 #include "common/stream/device.h"
+#include "common/text/number.h"
 #include "common/text/utc.h"
 #include "common/units/instant.h"
+#include "common/units/units.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
 
@@ -56,6 +59,39 @@ void AppendNames(const std::vector<std::string>& names, std::size_t count, std::
   }
 }
 
+/// The stated deviations of the links of a reconstructed person; of others, whose orientations are
+/// not estimates, none. A row does not say how far the knees are bent: the larger one counts.
+std::vector<double> OrientationDeviations(const v1::Skeleton& skeleton) {
+  std::vector<double> deviations;
+  if (skeleton.name() != "person") return deviations;
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  for (const v1::Link& link : skeleton.links()) {
+    names.push_back(link.name());
+    parents.push_back(link.parent());
+  }
+  for (const body::AngleDeviation& link : body::DeviationsOfLinks(names, parents)) {
+    deviations.push_back(DegreesToRadians(std::max(link.upright_deg, link.bent_deg)));
+  }
+  return deviations;
+}
+
+bool IsValid(const pb::Message* character) {
+  if (character == nullptr) return false;
+  const pb::FieldDescriptor* field = character->GetDescriptor()->FindFieldByName("valid");
+  return field != nullptr && !field->is_repeated() &&
+         field->cpp_type() == pb::FieldDescriptor::CPPTYPE_BOOL &&
+         character->GetReflection()->GetBool(*character, field);
+}
+
+void AppendDeviations(const std::vector<double>& deviations, std::size_t count, bool valid,
+                      std::string& out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    out += ',';
+    if (valid && i < deviations.size()) text::AppendFixed(out, deviations[i], 3);
+  }
+}
+
 }  // namespace
 
 void RowNotes::TakeSession(const mcap::TextMap& values) {
@@ -86,6 +122,8 @@ void RowNotes::Take(const std::string& topic, std::string_view bytes) {
     server.links.clear();
     for (const v1::Link& link : skeleton.links()) server.links.push_back(link.name());
     server.contacts.assign(skeleton.contact_points().begin(), skeleton.contact_points().end());
+    server.orientation_sd_rad = OrientationDeviations(skeleton);
+    most_deviations_ = std::max(most_deviations_, server.orientation_sd_rad.size());
     most_links_ = std::max(most_links_, server.links.size());
     most_contacts_ = std::max(most_contacts_, server.contacts.size());
   }
@@ -102,6 +140,9 @@ std::vector<std::string> RowNotes::Columns(const pb::Descriptor* row) const {
   }
   for (std::size_t i = 0; i < most_contacts_; ++i) {
     names.push_back("contacts_" + std::to_string(i) + "_name");
+  }
+  for (std::size_t i = 0; i < most_deviations_; ++i) {
+    names.push_back("links_" + std::to_string(i) + "_orientation_sd_rad");
   }
   return names;
 }
@@ -121,6 +162,17 @@ std::string RowNotes::Role(const std::string& topic, const pb::Descriptor* row,
   return role == server.roles.end() ? "" : role->second;
 }
 
+std::string RowNotes::DeviationNote(const std::string& topic, const pb::Descriptor* row) const {
+  const Server& server = ServerAt(topic);
+  if (!IsCharacter(row) || server.orientation_sd_rad.empty()) return "";
+  std::string note = "orientation_sd_rad of links 0, 1, ...: ";
+  for (std::size_t i = 0; i < server.orientation_sd_rad.size(); ++i) {
+    if (i > 0) note += ", ";
+    text::AppendFixed(note, server.orientation_sd_rad[i], 3);
+  }
+  return note + "; " + std::string(body::AngleDeviationSource());
+}
+
 std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
                             const pb::Message* entry, std::uint64_t log_time_ns) const {
   const Server& server = ServerAt(topic);
@@ -135,6 +187,7 @@ std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
   if (IsCharacter(row)) {
     AppendNames(server.links, most_links_, cells);
     AppendNames(server.contacts, most_contacts_, cells);
+    AppendDeviations(server.orientation_sd_rad, most_deviations_, IsValid(entry), cells);
   }
   return cells;
 }

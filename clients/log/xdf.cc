@@ -90,7 +90,9 @@ void AppendHeader(const Stream& stream, std::string& out) {
   xml += Element("nominal_srate", "0");  // Every sample has its time.
   xml += Element("channel_format", stream.is_text ? "string" : "double64");
   xml += Element("source_id", stream.source_id);
-  xml += "<desc><channels>";
+  xml += "<desc>";
+  if (!stream.note.empty()) xml += Element("note", stream.note);
+  xml += "<channels>";
   for (const std::string& channel : stream.channels) {
     xml += "<channel>" + Element("label", channel) + "</channel>";
   }

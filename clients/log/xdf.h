@@ -20,6 +20,7 @@ struct Stream {
   std::string source_id;  ///< The same for the same source in every recording.
   std::vector<std::string> channels;
   bool is_text = false;
+  std::string note{};  ///< What else its header says; may be empty.
 };
 
 /// What a stream's footer says.

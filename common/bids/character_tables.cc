@@ -3,8 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "common/body/angle_deviation.h"
 #include "common/stream/gait.h"
 #include "common/stream/trial.h"
+#include "common/units/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::bids {
@@ -31,9 +33,30 @@ MotionTable SimulationTable() {
   return table;
 }
 
+/// How exact the orientations of the links are, rad.
+nlohmann::ordered_json OrientationNotes(const v1::Skeleton& skeleton) {
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  for (const v1::Link& link : skeleton.links()) {
+    names.push_back(link.name());
+    parents.push_back(link.parent());
+  }
+  nlohmann::ordered_json notes = nlohmann::ordered_json::object();
+  const auto deviations = body::DeviationsOfLinks(names, parents);
+  if (deviations.empty()) return notes;
+  nlohmann::ordered_json& all = notes["OrientationStandardDeviation"];
+  all["Description"] = body::AngleDeviationSource();
+  all["Units"] = "rad";
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    all["TrackedPoints"][names[i]] = {{"Upright", DegreesToRadians(deviations[i].upright_deg)},
+                                      {"Bent", DegreesToRadians(deviations[i].bent_deg)}};
+  }
+  return notes;
+}
+
 /// A joint for each link, and whether the frame is trusted.
 MotionTable BodyTable(const v1::Skeleton& skeleton) {
-  MotionTable table{"body", "Footing", {Latency()}, {}};
+  MotionTable table{"body", "Footing", {Latency()}, {}, OrientationNotes(skeleton)};
   for (const v1::Link& link : skeleton.links()) {
     AddVector(link.name(), "POS", link.name(), "m", table);
     AddTurn(link.name(), link.name(), table);

@@ -93,6 +93,7 @@ ordered_json MotionJson(const MotionTable& table, const std::string& task,
                        {"MotionChannelCount", table.channels.size()},
                        {"TrackedPointsCount", points.size()}};
   for (const auto& [type, count] : of_type) json[type + "ChannelCount"] = count;
+  json.update(table.notes);
   return json;
 }
 

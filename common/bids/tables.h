@@ -24,6 +24,8 @@ struct MotionTable {
   std::string manufacturer;  ///< Kind of the device; "Footing" for the simulation.
   std::vector<Channel> channels;
   std::vector<double> cells;  ///< Row by row, as many as channels; NaN: missing.
+  /// More fields of motion.json.
+  nlohmann::ordered_json notes = nlohmann::ordered_json::object();
 };
 
 /// The time of each row, s.

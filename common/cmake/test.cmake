@@ -14,16 +14,39 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   set(TEST_HEADER_OPTIONS -fpch-preprocess)  # Lets ccache see what was parsed.
 endif()
 
-# add_module_test(<name> [TOGETHER] SOURCES ... [DEPS ...] [LABELS ...] [TIMEOUT seconds]): one GoogleTest program; every case
+# The one rule for limits of wall time: they guard against hangs and nothing else. A limit is ten times what the test takes
+# alone on a quiet machine with two cores, thrice that with sanitizers, and at least five minutes. A test that takes over half a
+# minute states its time: set_quiet_time(<seconds> <test>...), or QUIET_S of add_module_test. No other place sets a TIMEOUT.
+set(QUIET_S_OF_MOST 30)
+function(limit_of_quiet_time quiet_s out)
+  set(factor 10)
+  if(FOOTING_SANITIZE)
+    set(factor 30)
+  endif()
+  if(quiet_s LESS QUIET_S_OF_MOST)
+    set(quiet_s ${QUIET_S_OF_MOST})
+  endif()
+  math(EXPR limit_s "${factor} * ${quiet_s}")
+  set(${out} ${limit_s} PARENT_SCOPE)
+endfunction()
+function(set_quiet_time quiet_s)
+  limit_of_quiet_time(${quiet_s} limit_s)
+  set_tests_properties(${ARGN} PROPERTIES TIMEOUT ${limit_s})
+endfunction()
+# Listing the cases of a program takes a moment, but its limit of 5 s cuts it on a loaded machine.
+set(DISCOVERY_LIMIT_S 120)
+
+# add_module_test(<name> [TOGETHER] SOURCES ... [DEPS ...] [LABELS ...] [QUIET_S seconds]): one GoogleTest program; every case
 # becomes one CTest test, or with TOGETHER all cases one: they share what takes long to make. Cases that call GTEST_SKIP show as skipped.
 function(add_module_test name)
-  cmake_parse_arguments(arg "TOGETHER" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "TOGETHER" "QUIET_S" "SOURCES;DEPS;LABELS" ${ARGN})
   if(FOOTING_SANITIZE AND arg_LABELS MATCHES "long")
     return()  # Never run with sanitizers.
   endif()
-  if(NOT arg_TIMEOUT)
-    set(arg_TIMEOUT 300)
+  if(NOT arg_QUIET_S)
+    set(arg_QUIET_S ${QUIET_S_OF_MOST})
   endif()
+  limit_of_quiet_time(${arg_QUIET_S} limit_s)
   set(links "")
   foreach(dep IN LISTS arg_DEPS)
     if(DEFINED EXTERNAL_${dep})
@@ -40,7 +63,7 @@ function(add_module_test name)
                              FOOTING_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_precompile_headers(${name} REUSE_FROM test_headers)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  set(properties ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT ${arg_TIMEOUT})
+  set(properties ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT ${limit_s})
   if(arg_LABELS)
     list(APPEND properties LABELS "${arg_LABELS}")
   endif()
@@ -50,5 +73,5 @@ function(add_module_test name)
     return()
   endif()
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
-                       PROPERTIES ${properties})
+                       DISCOVERY_TIMEOUT ${DISCOVERY_LIMIT_S} PROPERTIES ${properties})
 endfunction()

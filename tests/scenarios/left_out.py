@@ -121,6 +121,12 @@ class Bench:
                         "--seed", SEED, "--no-baselines", *words)
 
     @once
+    def markers(self, clip, *words):
+        """A person of another laboratory, whom the built-in model has not seen."""
+        return self.run("footing-eval", "pose", "--motion", self.data / f"mocap/c3d/{clip}.c3d", "--seed", SEED,
+                        "--no-baselines", *words)
+
+    @once
     def plates(self, trial, *words, seed=SEED, still_forces=False):
         folder = self.data / "forces/opencap_s4"
         forces = folder / "ID"

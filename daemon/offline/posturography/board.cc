@@ -21,9 +21,19 @@ CopSample CentreOfPressure(const CornerSample& sample, const BoardShape& shape) 
   return {sample.time_s, at.x_m, at.y_m};
 }
 
-/// Appends to the last stretch, or begins one after a gap.
-void Append(const CopSample& sample, double longest_s, bool begin, Stretches& stretches) {
-  if (begin || stretches.empty() || sample.time_s - stretches.back().back().time_s > longest_s) {
+/// Appends to the last stretch, or begins one after a gap or where `begin` says so.
+void Append(const CopSample& sample, double longest_s, bool begin, Standing& standing) {
+  Stretches& stretches = standing.stretches;
+  ++standing.samples;
+  if (begin || stretches.empty()) {
+    stretches.push_back({sample});
+    return;
+  }
+  const double interval_s = sample.time_s - stretches.back().back().time_s;
+  if (interval_s > longest_s) {
+    ++standing.gaps.count;
+    standing.gaps.longest_s = std::max(standing.gaps.longest_s, interval_s);
+    standing.gaps.seconds += interval_s;
     stretches.emplace_back();
   }
   stretches.back().push_back(sample);
@@ -47,20 +57,17 @@ Standing FindStanding(const std::vector<CornerSample>& samples, const BoardShape
   bool stood = false;
   for (const CornerSample& sample : samples) {
     const bool stands = Total(sample.forces) >= least_n;
-    if (stands) {
-      Append(CentreOfPressure(sample, shape), longest_s, !stood, standing.stretches);
-      ++standing.samples;
-    }
+    if (stands) Append(CentreOfPressure(sample, shape), longest_s, !stood, standing);
     stood = stands;
   }
   return standing;
 }
 
-Stretches SplitAtGaps(const std::vector<CopSample>& samples) {
-  Stretches stretches;
+Standing SplitAtGaps(const std::vector<CopSample>& samples) {
+  Standing standing;
   const double longest_s = LongestInterval(samples);
-  for (const CopSample& sample : samples) Append(sample, longest_s, false, stretches);
-  return stretches;
+  for (const CopSample& sample : samples) Append(sample, longest_s, false, standing);
+  return standing;
 }
 
 }  // namespace footing::posturography

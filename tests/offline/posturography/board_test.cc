@@ -32,11 +32,28 @@ TEST(Board, SteppingOffEndsAStretch) {
   EXPECT_EQ(Measure(standing.stretches).path_m, 0);  // Nobody walked the 2 cm between.
 }
 
-TEST(Board, AGapInTheRecordingEndsAStretch) {
-  std::vector<CopSample> samples = {{0, 0, 0}, {0.01, 0, 0}, {0.02, 0, 0}, {0.6, 1, 0}};
-  EXPECT_EQ(SplitAtGaps(samples).size(), 2u);  // 0.58 s is longer than 0.5 s.
-  samples[3].time_s = 0.5;
-  EXPECT_EQ(SplitAtGaps(samples).size(), 1u);
+TEST(Board, AGapInTheRecordingEndsAStretchAndIsCounted) {
+  std::vector<CopSample> samples = {{0, 0, 0}, {0.01, 0, 0}, {0.02, 0, 0}, {0.41, 1, 0}};
+  const Standing cut = SplitAtGaps(samples);
+  EXPECT_EQ(cut.stretches.size(), 2u);  // 0.39 s is longer than 0.2 s.
+  EXPECT_EQ(cut.gaps.count, 1u);
+  EXPECT_NEAR(cut.gaps.longest_s, 0.39, 1e-12);
+  EXPECT_NEAR(cut.gaps.seconds, 0.39, 1e-12);
+  samples[3].time_s = 0.2;
+  EXPECT_EQ(SplitAtGaps(samples).stretches.size(), 1u);
+  EXPECT_EQ(SplitAtGaps(samples).gaps.count, 0u);
+}
+
+TEST(Board, TimeOffTheBoardIsNotAGap) {
+  std::vector<CornerSample> samples;
+  for (int k = 0; k < 10; ++k) samples.push_back(Standing600(0.01 * k, 0, 0));
+  samples.push_back({0.1, 1, 1, 1, 1});
+  for (int k = 0; k < 10; ++k) samples.push_back(Standing600(9 + 0.01 * k, 0, 0));
+  samples.push_back(Standing600(12, 0, 0));
+  const Standing standing = FindStanding(samples, {});
+  EXPECT_EQ(standing.stretches.size(), 3u);
+  EXPECT_EQ(standing.gaps.count, 1u);
+  EXPECT_NEAR(standing.gaps.seconds, 2.91, 1e-9);
 }
 
 TEST(Board, AnEmptyBoardHasNoWeight) {

@@ -15,7 +15,7 @@ ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_R
 
 def run(ranks, *command):
     launcher = [*RANKS, str(ranks)] if ranks else []
-    return subprocess.run([*launcher, *map(str, command)], capture_output=True, text=True, timeout=100,
+    return subprocess.run([*launcher, *map(str, command)], capture_output=True, text=True,
                           env=ENVIRONMENT)
 
 

@@ -15,7 +15,7 @@ PROGRAM = sys.argv.pop()
 
 
 def run(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
 
 
 class OwnRecording(unittest.TestCase):
@@ -23,7 +23,7 @@ class OwnRecording(unittest.TestCase):
     def setUpClass(cls):
         cls.made = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.made.cleanup)
-        subprocess.run([WRITER, cls.made.name], check=True, timeout=120)
+        subprocess.run([WRITER, cls.made.name], check=True)
 
     def setUp(self):
         self.holder = tempfile.TemporaryDirectory()

@@ -8,8 +8,10 @@
 
 #include "common/board/geometry.h"
 #include "common/cli/cli.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/board/board_export.h"
+#include "daemon/offline/eval/board/cop_filter.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/eval/report/table.h"
 #include "daemon/offline/posturography/board.h"
@@ -22,17 +24,21 @@ using nlohmann::ordered_json;
 using posturography::Stretches;
 using posturography::Sway;
 
-/// 55 hours at 100 Hz: a guard against times in another unit.
-constexpr double kMostResampled = 2e7;
 /// More than anybody weighs, and less than a light adult's weight in newtons.
 constexpr double kMostPersonKg = 300;
+
+/// Below this, measures of sway are not comparable with those of others: 25 to 40 s are advised
+/// (Scoppa F et al., Clinical stabilometry standardization, Gait & Posture 37(2), 2013).
+constexpr double kShortestS = 20;
+/// 20 s of samples end an interval sooner.
+constexpr double kIntervalS = 0.1;
 
 struct Options {
   std::string corners;
   std::string cop;
   std::string board;  ///< Of an export with several.
-  double rate_hz = 0;
-  double window_s = 0;
+  CopFilterOptions filter;
+  double least_s = kShortestS;
   posturography::BoardShape shape;
   double spacing_x_mm = board::kBalanceBoard.sensor_distance_x_m * 1e3;
   double spacing_y_mm = board::kBalanceBoard.sensor_distance_y_m * 1e3;
@@ -42,9 +48,11 @@ struct Options {
 struct Input {
   ordered_json head;  ///< Fields of the answer that come before the measures.
   Stretches stretches;
+  posturography::Gaps gaps;
+  std::vector<std::string> warnings;  ///< What makes the measures less than they seem.
 };
 
-Result<std::vector<posturography::CornerSample>> ReadSamples(const Options& options) {
+Result<BoardExport> ReadSamples(const Options& options) {
   if (IsBoardExport(options.corners)) return ReadBoardExport(options.corners, options.board);
   if (!options.board.empty()) {
     return UsageError("--board chooses a board of footing-log's export; " + options.corners +
@@ -52,20 +60,42 @@ Result<std::vector<posturography::CornerSample>> ReadSamples(const Options& opti
   }
   const auto rows = ReadTimeTable(options.corners, "time_s,tl_kg,tr_kg,bl_kg,br_kg");
   if (!rows) return rows.error();
-  std::vector<posturography::CornerSample> samples;
-  samples.reserve(rows->size());
+  BoardExport read;
+  read.samples.reserve(rows->size());
   for (const std::vector<double>& row : *rows) {
-    samples.push_back({row[0],
-                       {KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
-                        KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])}});
+    read.samples.push_back({row[0],
+                            {KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
+                             KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])}});
   }
-  return samples;
+  return read;
+}
+
+/// What the file says about the board; null where it says nothing.
+void AppendMarks(const BoardExport& board, Input& input) {
+  const auto mark = [&](const char* name, const auto& value) {
+    input.head[name] = value ? ordered_json(*value) : ordered_json(nullptr);
+  };
+  mark("simulated", board.simulated);
+  mark("tared", board.tared);
+  mark("calibrated", board.calibrated);
+  mark("missing_ticks", board.missing_ticks);
+  if (board.simulated.value_or(false)) input.warnings.push_back("the board is simulated");
+  if (!board.tared.value_or(true)) {
+    input.warnings.push_back("the board was not tared: its own weight is part of the loads");
+  }
+  if (!board.calibrated.value_or(true)) {
+    input.warnings.push_back("the board's calibration was not read: its loads are approximate");
+  }
+  if (board.missing_ticks.value_or(0) > 0) {
+    input.warnings.push_back(std::to_string(*board.missing_ticks) +
+                             " ticks are missing in the recording");
+  }
 }
 
 Result<Input> ReadCorners(const Options& options) {
   const auto read = ReadSamples(options);
   if (!read) return read.error();
-  const std::vector<posturography::CornerSample>& samples = *read;
+  const std::vector<posturography::CornerSample>& samples = read->samples;
   posturography::BoardShape shape = options.shape;
   shape.geometry.sensor_distance_x_m = options.spacing_x_mm / 1000;
   shape.geometry.sensor_distance_y_m = options.spacing_y_mm / 1000;
@@ -86,6 +116,8 @@ Result<Input> ReadCorners(const Options& options) {
   input.head["samples_read"] = samples.size();
   input.head["samples_without_cop"] = samples.size() - standing.samples;
   input.stretches = std::move(standing.stretches);
+  input.gaps = standing.gaps;
+  AppendMarks(*read, input);
   return input;
 }
 
@@ -99,36 +131,21 @@ Result<Input> ReadCop(const Options& options) {
   }
   Input input;
   input.head["samples_read"] = samples.size();
-  input.stretches = posturography::SplitAtGaps(samples);
+  posturography::Standing standing = posturography::SplitAtGaps(samples);
+  input.stretches = std::move(standing.stretches);
+  input.gaps = standing.gaps;
   return input;
 }
 
-/// Resamples every stretch when asked to; says in the answer what was done.
-Result<void> Filter(const Options& options, Input& input) {
-  const double median_s = posturography::MedianInterval(input.stretches);
+void AppendGaps(Input& input) {
   input.head["stretches"] = input.stretches.size();
-  input.head["recorded_rate_hz"] = median_s > 0 ? 1 / median_s : 0.0;
-  if (options.rate_hz <= 0) {
-    input.head["filter"] = "none";
-    return {};
-  }
-  double duration_s = 0;
-  for (const auto& stretch : input.stretches) {
-    duration_s += stretch.back().time_s - stretch.front().time_s;
-  }
-  if (duration_s * options.rate_hz > kMostResampled) {
-    return InvalidData("the recording lasts " + std::to_string(duration_s) +
-                       " s, too long for --rate-hz; is its time in seconds?");
-  }
-  const double window_s =
-      options.window_s > 0 ? options.window_s : std::max(2 / options.rate_hz, 2 * median_s);
-  for (std::vector<posturography::CopSample>& stretch : input.stretches) {
-    stretch = posturography::Resample(stretch, options.rate_hz, window_s);
-  }
-  input.head["filter"] = "SWARII window average (Audiffren & Contal 2016)";
-  input.head["filter_window_s"] = window_s;
-  input.head["rate_hz"] = options.rate_hz;
-  return {};
+  input.head["gaps"] = {{"count", input.gaps.count},
+                        {"longest_s", input.gaps.longest_s},
+                        {"seconds", input.gaps.seconds}};
+  if (input.gaps.count == 0) return;
+  input.warnings.push_back("samples are missing in " + std::to_string(input.gaps.count) +
+                           (input.gaps.count == 1 ? " gap" : " gaps") +
+                           "; nothing is measured across them");
 }
 
 void Append(const Sway& sway, ordered_json& out) {
@@ -163,22 +180,33 @@ void Append(const Sway& sway, ordered_json& out) {
 
 Result<ordered_json> Evaluate(const Options& options) {
   const bool corners = !options.corners.empty();
+  const std::string& file = corners ? options.corners : options.cop;
+  const Result<CopFilter> filter = CopFilterOf(options.filter, corners);
+  if (!filter) return filter.error();
   Result<Input> input = corners ? ReadCorners(options) : ReadCop(options);
   if (!input) return input.error();
-  if (const Result<void> filtered = Filter(options, *input); !filtered) return filtered.error();
-  std::size_t samples = 0;
-  double duration_s = 0;
-  for (const auto& stretch : input->stretches) {
-    samples += stretch.size();
-    duration_s += stretch.back().time_s - stretch.front().time_s;
+  AppendGaps(*input);
+  const auto filtered = FilterCop(*filter, input->stretches, input->head);
+  if (!filtered) return filtered.error();
+  if (filter->rate_hz <= 0) {
+    input->warnings.push_back(
+        "the COP is not filtered: noise and uneven sampling make the path longer");
   }
+  std::size_t samples = 0;
+  for (const auto& stretch : input->stretches) samples += stretch.size();
+  const double duration_s = DurationS(input->stretches);
   if (samples < 3 || duration_s <= 0) {
-    return InvalidData((corners ? options.corners : options.cop) +
-                       ": measures of sway need 3 samples of a COP over some time; it has " +
+    return InvalidData(file + ": measures of sway need 3 samples of a COP over some time; it has " +
                        std::to_string(samples));
+  }
+  if (duration_s < options.least_s - kIntervalS) {
+    return InvalidData(file + ": the person stood for " + text::Fixed(duration_s, 2) +
+                       " s; measures of sway need " + text::Shortest(options.least_s) +
+                       " s to be comparable; record longer, or accept less with --min-seconds");
   }
   ordered_json out = std::move(input->head);
   Append(posturography::Measure(input->stretches), out);
+  out["warnings"] = input->warnings;
   return out;
 }
 
@@ -199,16 +227,20 @@ void AddBoardCommand(CLI::App& app, Shared& shared) {
       ->add_option("--board", options->board,
                    "Board of an export with several: its role (left_board) or device number")
       ->needs(corners);
-  auto* rate =
-      command
-          ->add_option("--rate-hz", options->rate_hz,
-                       "Uniform rate to resample to by window averages, Hz (default: as recorded)")
-          ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--rate-hz", options->filter.rate,
+                      "Even rate to resample to by window averages, Hz, or recorded (default: 50 "
+                      "with --corners, recorded with --cop)");
+  command->add_option("--cutoff-hz", options->filter.cutoff,
+                      "Low-pass without lag, Butterworth of 4th order: its cutoff, Hz, or none "
+                      "(default: 10 with --corners, none with --cop or below 28 Hz)");
   command
-      ->add_option("--window-s", options->window_s,
+      ->add_option("--window-s", options->filter.window_s,
                    "Window of the averages, s (default: 2 intervals of the slower rate)")
-      ->needs(rate)
       ->check(CLI::Range(0.001, 10.0));
+  command
+      ->add_option("--min-seconds", options->least_s, "Least time of standing that is evaluated, s")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   command
       ->add_option("--spacing-x-mm", options->spacing_x_mm,
                    "Distance between the sensors along the long axis, mm")

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,13 +10,22 @@
 
 namespace footing::eval {
 
+/// One board of an export, and what the export says about it; nothing where it does not.
+struct BoardExport {
+  std::vector<posturography::CornerSample> samples;  ///< In seconds since the first one.
+  std::optional<bool> simulated;                     ///< At least one sample is.
+  std::optional<bool> tared;                         ///< All samples are.
+  std::optional<bool> calibrated;                    ///< All samples are.
+  std::optional<std::uint64_t> missing_ticks;        ///< Of the server, in the whole recording.
+};
+
 /// The file is the boards' CSV of `footing-log export`, by its header.
 bool IsBoardExport(const std::string& path);
 
-/// One board's samples out of such a file, in seconds since its first one. `board` is a role
-/// (left_board), a device number, or empty when the file holds one board only; a usage error lists
-/// the boards when it holds several or not that one.
-Result<std::vector<posturography::CornerSample>> ReadBoardExport(const std::string& path,
-                                                                 const std::string& board);
+/// One board out of such a file. `board` is a role (left_board), a device number, or empty when the
+/// file holds one board only; a usage error lists the boards when it holds several or not that one.
+/// Missing ticks come from the file of gaps beside it; where there is none but the export's file of
+/// devices, none are missing.
+Result<BoardExport> ReadBoardExport(const std::string& path, const std::string& board);
 
 }  // namespace footing::eval

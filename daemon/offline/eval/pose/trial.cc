@@ -8,6 +8,7 @@
 #include "daemon/offline/eval/pose/breakdown.h"
 #include "daemon/offline/eval/pose/com_score.h"
 #include "daemon/offline/eval/pose/foot_score.h"
+#include "daemon/offline/eval/scores/angle_score.h"
 #include "daemon/offline/eval/scores/pose_metrics.h"
 #include "daemon/offline/eval/scores/roughness.h"
 #include "daemon/offline/timing/momentum_cost.h"
@@ -66,12 +67,18 @@ class SmoothnessScore {
 class TrialScore {
  public:
   TrialScore(const pose_run::PoseRun& run, std::size_t lag)
-      : run_(run), lag_(lag), pose_(run.body), feet_(run, lag), breakdown_(run) {}
+      : run_(run),
+        lag_(lag),
+        pose_(run.body),
+        angles_(run.body),
+        feet_(run, lag),
+        breakdown_(run) {}
 
   /// The output that came with frame `i`.
   void Add(const reconstruction::Output& output, std::size_t i) {
     const pose_run::Frame& truth = run_.frames[i - lag_];
     pose_.Add(output.q, truth.q);
+    angles_.Add(output.q, truth.q, output.valid);
     com_.Add(run_.body, output, pose_, truth);
     feet_.Add(output, pose_, i);
     smoothness_.Add(run_.body.landmarks, output, pose_, truth);
@@ -85,8 +92,9 @@ class TrialScore {
     finite_ = finite_ && output.q.allFinite();
   }
 
-  ordered_json Json() const {
+  Result<ordered_json> Json() const {
     ordered_json json = pose_.Json();
+    if (const Result<void> written = angles_.WriteTo(json); !written) return written.error();
     com_.WriteTo(json);
     smoothness_.WriteTo(json);
     feet_.WriteTo(json);
@@ -96,11 +104,11 @@ class TrialScore {
     json["misfit_p95"] = misfit_.Quantile(0.95);
     json["invalid_frames"] = invalid_;
     json["valid_fraction"] = 1 - static_cast<double>(invalid_) / static_cast<double>(frames_);
-    json["not_valid_for"] = {{"no_loads", no_loads_},
-                             {"weight_elsewhere", weight_elsewhere_},
-                             {"height", height_},
-                             {"step", step_},
-                             {"misfit", misfit_count_}};
+    json["not_valid_for"] = {{"no_loads", causes_.no_loads},
+                             {"weight_elsewhere", causes_.weight_elsewhere},
+                             {"height", causes_.height},
+                             {"step", causes_.step},
+                             {"misfit", causes_.misfit}};
     json["longest_invalid_s"] = static_cast<double>(longest_invalid_) / run_.rate_hz;
     json["finite"] = finite_;
     return json;
@@ -113,16 +121,17 @@ class TrialScore {
     longest_invalid_ = std::max(longest_invalid_, invalid_since_);
     if (output.valid) return;
     ++invalid_;
-    ++(!output.momentum.valid          ? no_loads_
-       : !output.momentum.whole_weight ? weight_elsewhere_
-       : !output.momentum.trusted      ? height_
-       : output.momentum.stepped       ? step_
-                                       : misfit_count_);
+    ++(!output.momentum.valid          ? causes_.no_loads
+       : !output.momentum.whole_weight ? causes_.weight_elsewhere
+       : !output.momentum.trusted      ? causes_.height
+       : output.momentum.stepped       ? causes_.step
+                                       : causes_.misfit);
   }
 
   const pose_run::PoseRun& run_;
   const std::size_t lag_;
   PoseScore pose_;
+  AngleScore angles_;
   ComScore com_;
   SmoothnessScore smoothness_;
   FootScore feet_;
@@ -131,8 +140,10 @@ class TrialScore {
   Spread misfit_;
   std::size_t frames_ = 0, invalid_ = 0;
   std::size_t invalid_since_ = 0, longest_invalid_ = 0;  ///< Frames in a row.
-  /// Causes.
-  std::size_t no_loads_ = 0, weight_elsewhere_ = 0, height_ = 0, step_ = 0, misfit_count_ = 0;
+  /// Frames that are not valid, by their cause.
+  struct {
+    std::size_t no_loads = 0, weight_elsewhere = 0, height = 0, step = 0, misfit = 0;
+  } causes_;
   bool finite_ = true;
 };
 
@@ -163,7 +174,9 @@ Result<ordered_json> RunPoseTrial(const pose_run::PoseRun& run,
                        {"mass_kg", made->output().mass_kg},
                        {"lag_ms", 1000 * made->output().lag_s},
                        {"resets", made->output().resets}};
-  json.update(score.Json());
+  const Result<ordered_json> figures = score.Json();
+  if (!figures) return figures.error();
+  json.update(*figures);
   const double unit_us = timing::MomentumCostUs(run.body, run.frames.front().q);
   json["solve_us_p50"] = solve_us.Quantile(0.5);
   json["solve_us_p99"] = solve_us.Quantile(0.99);

@@ -21,7 +21,7 @@ JUDGED = ("--motion", DATA / "13_30.amc", "--skeleton", DATA / "13_reconstructed
 
 
 def run(*arguments):
-    return subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=120)
+    return subprocess.run([*map(str, arguments)], capture_output=True, text=True)
 
 
 class Arm(unittest.TestCase):

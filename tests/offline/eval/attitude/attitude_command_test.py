@@ -17,7 +17,7 @@ GRAVITY = 9.80665
 
 
 def run(*arguments):
-    return subprocess.run([EVAL, "attitude", *map(str, arguments)], capture_output=True, text=True, timeout=60)
+    return subprocess.run([EVAL, "attitude", *map(str, arguments)], capture_output=True, text=True)
 
 
 class Attitude(unittest.TestCase):

@@ -11,7 +11,7 @@ EVAL = sys.argv.pop(1)
 
 
 def run(*words):
-    done = subprocess.run([EVAL, "calibration", *words, "--json"], capture_output=True, text=True, timeout=200,
+    done = subprocess.run([EVAL, "calibration", *words, "--json"], capture_output=True, text=True,
                           check=True)
     return json.loads(done.stdout)
 

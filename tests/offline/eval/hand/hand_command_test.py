@@ -19,7 +19,7 @@ if not DATA.is_dir():
 def run(*arguments):
     done = subprocess.run([EVAL, "hand", "--motion", DATA / "14_14.amc", "--skeleton",
                            DATA / "14_reconstructed.asf", "--hidden-s", "0.25", "--json", *arguments],
-                          capture_output=True, text=True, timeout=50)
+                          capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)["rows"]
 

@@ -25,7 +25,7 @@ def main():
                  "--walking", folder / f"walking{walk[-1]}.trc"]
     trials = 40 if walk == "recorded_2" else 200
     done = subprocess.run([program, "features", "--mounting-trials", str(trials), "--seed", "7", *words,
-                           "--json"], capture_output=True, text=True, timeout=580, check=False)
+                           "--json"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     out = json.loads(done.stdout)
     print(json.dumps(out))

@@ -22,11 +22,12 @@ FIELDS = ("frames rate_hz mpjpe_cm mpjpe_p95_cm mpjpe_root_relative_cm mpjpe_leg
           "com_vertical_drift_cm_per_min com_horizontal_drift_cm_per_min foot_skate_cm_per_s "
           "foot_position_rms_cm contact_f1 landing_delay_ms solve_us_p50 solve_us_p99 hip_swing_deg "
           "hip_twist_deg hip_twist_bent_deg hip_about_mean_deg hip_flexion_deg hip_abduction_deg "
-          "hip_rotation_deg pelvis_deg thigh_direction_deg baselines").split()
+          "hip_rotation_deg pelvis_deg thigh_direction_deg joint_angles "
+          "link_orientations bent_frames baselines").split()
 
 
 def run(*arguments):
-    return subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=120)
+    return subprocess.run([*map(str, arguments)], capture_output=True, text=True)
 
 
 class Pose(unittest.TestCase):
@@ -110,6 +111,27 @@ class Pose(unittest.TestCase):
             self.assertLessEqual(hip, swing + twist)
             self.assertLessEqual(swing, report["pelvis_deg"] + report["thigh_direction_deg"])
             self.assertGreater(twist, 1)
+
+    def test_every_exported_angle_has_its_error(self):
+        report = self.judge("pose", "--no-baselines")
+        self.assertEqual(sorted(report["joint_angles"]), sorted(
+            "pelvis_tilt pelvis_list pelvis_rotation hip_flexion hip_adduction hip_rotation knee_angle ankle_angle "
+            "lumbar_extension lumbar_bending lumbar_rotation arm_flex arm_add arm_rot elbow_flex".split()))
+        self.assertEqual(sorted(report["link_orientations"]),
+                         sorted("pelvis chest head upper_arm forearm hand thigh shank foot".split()))
+        bent = report["bent_frames"] / report["frames"]
+        self.assertTrue(0 < bent < 1, bent)  # A walk and a kick.
+        for angle in [*report["joint_angles"].values(), *report["link_orientations"].values()]:
+            self.assertGreater(angle["rmse_deg"], 0.5)
+            parts = (1 - bent) * angle["rmse_upright_deg"] ** 2 + bent * angle["rmse_bent_deg"] ** 2
+            self.assertAlmostEqual(angle["rmse_deg"] ** 2, parts, places=6)
+            self.assertGreater(angle["rmse_valid_deg"], 0)
+        knee = report["joint_angles"]["knee_angle"]
+        self.assertGreater(knee["true_range_deg"], 40)
+        self.assertLessEqual(abs(knee["mean_error_deg"]), knee["rmse_deg"])
+        # A true knee has no error but that of the hips and feet about it.
+        self.assertLess(self.judge("pose", "--no-baselines", "--oracle", "com", "--oracle", "feet")
+                        ["joint_angles"]["knee_angle"]["rmse_deg"], knee["rmse_deg"])
 
     def test_wrong_boards_make_it_worse(self):
         right = self.judge("pose", "--no-baselines")

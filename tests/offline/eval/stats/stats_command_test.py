@@ -27,7 +27,7 @@ class Runner:
     def __call__(self, test, text, *words):
         self.path.write_text(text)
         return subprocess.run(
-            [self.program, "stats", "--test", test, "--data", self.path, "--json", *words], timeout=60,
+            [self.program, "stats", "--test", test, "--data", self.path, "--json", *words],
             capture_output=True, text=True, check=False)
 
     def report(self, test, text, *words):
@@ -118,7 +118,7 @@ def examples(program, stream, folder):
     assert len(commands) >= 4, text
     for words in commands:
         done = subprocess.run([program, *words[1:]], cwd=folder, capture_output=True, text=True,
-                              check=False, timeout=60)
+                              check=False)
         assert done.returncode == 0 and not done.stderr, (shlex.join(words), done)
         if "--json" in words:
             rows = json.loads(done.stdout)["rows"]

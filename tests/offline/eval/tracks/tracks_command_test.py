@@ -18,7 +18,7 @@ def run(*words, command="tracks", most_bytes=resource.RLIM_INFINITY):
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # The write fails instead.
         resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, resource.RLIM_INFINITY))
 
-    return subprocess.run([sys.argv[1], command, *map(str, words), "--json"], timeout=100, preexec_fn=limit,
+    return subprocess.run([sys.argv[1], command, *map(str, words), "--json"], preexec_fn=limit,
                           capture_output=True, text=True, check=False)
 
 

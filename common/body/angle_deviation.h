@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace footing::body {
+
+/// Standard deviation of an angle of a reconstructed body: the RMS error on people who trained no
+/// model, in the group of clips where it is largest, in whole degrees above
+/// (docs/measurements/pose-angles.csv). Errors are not independent from frame to frame: the mean
+/// error of a clip is a great part of them. They were measured with tracked hands.
+struct AngleDeviation {
+  std::string_view name;
+  double upright_deg = 0;
+  double bent_deg = 0;  ///< While the mean of both knees is reported as kBentKneeDeg or more.
+};
+
+inline constexpr double kBentKneeDeg = 30;
+/// What the figures are and where they come from, in one sentence for the exports.
+std::string_view AngleDeviationSource();
+
+/// Of the coordinates of joint_angles::JointAngles, both sides alike: "hip_flexion", ...
+std::span<const AngleDeviation> CoordinateDeviations();
+/// Of a column, such as "hip_flexion_r"; nothing where it is not an angle.
+std::optional<AngleDeviation> CoordinateDeviation(std::string_view column);
+
+/// Of the orientation of links in W, as the angle of the rotation between estimate and truth:
+/// "pelvis", "thigh", ...
+std::span<const AngleDeviation> LinkDeviations();
+/// Of each link of a skeleton of a person, by the names and parents of its links (a parent comes
+/// first; -1: the root). A link without a landmark has that of the link that it hangs on. Empty
+/// where this is not the skeleton of a person.
+std::vector<AngleDeviation> DeviationsOfLinks(std::span<const std::string> names,
+                                              std::span<const int> parents);
+
+}  // namespace footing::body
