@@ -9,6 +9,7 @@
 #include "clients/camera/lights.h"
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/transport/run_folder.h"
 
 namespace footing::camera {
 namespace {
@@ -52,8 +53,9 @@ class Calibrating {
     if (calibration_)
       return Failure("no frames came for 30 s: is " + options_.frames.Name() + " sending?");
     if (!lights_.has_list())
-      return NoDevice("no footingd: " + lights_.link() +
-                      "; start it, or name its address with --sensor");
+      return NoDevice(
+          "no footingd: " + lights_.link() +
+          transport::RemedyFor(lights_.link(), "start it, or name its address with --sensor"));
     return NoDevice(
         "footingd has no PS Move with the role left_hand, right_hand or head: connect one, then "
         "give it one of them (footing-ctl assign)");

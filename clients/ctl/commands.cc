@@ -6,6 +6,7 @@
 #include "common/cli/cli.h"
 #include "common/text/json_text.h"
 #include "common/transport/address_or_default.h"
+#include "common/transport/run_folder.h"
 
 namespace footing::ctl {
 
@@ -51,8 +52,11 @@ Result<std::unique_ptr<Session>> OpenSimulation(const Shared& shared,
   auto session = Open(simulation, std::move(channels));
   if (!session && session.error().kind != ErrorKind::kNoDevice) return session.error();
   if (!session) {
-    return NoDevice("no footing-sim on " + simulation.connect + "; start it with: " + start_with +
-                    ", or name it with --connect");
+    // Its own remedy is about footingd.
+    const std::string& message = session.error().message;
+    const std::string why = message.substr(0, message.find("; "));
+    const std::string start = "start it with: " + start_with + ", or name it with --connect";
+    return NoDevice("no footing-sim on " + simulation.connect + transport::RemedyFor(why, start));
   }
   return session;
 }

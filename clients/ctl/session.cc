@@ -1,7 +1,5 @@
 #include "clients/ctl/session.h"
 
-#include <unistd.h>
-
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
@@ -11,26 +9,21 @@
 #include "clients/ctl/display/find_device.h"
 #include "common/clock/clock.h"
 #include "common/transport/client.h"
+#include "common/transport/run_folder.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {
 namespace {
 
 constexpr std::uint32_t kQueueTicks = 512;
-constexpr const char* kFolderOfService = "/run/footing";
 
 /// What to do when no footingd answers; `link` says why.
 std::string Remedy(const std::string& link) {
   // Something answers: a server that is started would not help, and the link says what would.
   if (link.find("does not speak TLS") != std::string::npos) return "";
-  const bool closed = access(kFolderOfService, F_OK) == 0 && access(kFolderOfService, X_OK) != 0;
-  if (closed) {
-    return "; the service's socket is for the group footing: sudo usermod -aG footing $USER, then "
-           "log in again";
-  }
-  return "; start it (sudo systemctl start footingd, or footingd in a terminal), or name its "
-         "address "
-         "with --connect";
+  return transport::RemedyFor(link,
+                              "start it (sudo systemctl start footingd, or footingd in a "
+                              "terminal), or name its address with --connect");
 }
 
 }  // namespace

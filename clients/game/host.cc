@@ -11,6 +11,7 @@
 #include "clients/game/messages.h"
 #include "common/clock/clock.h"
 #include "common/transport/client.h"
+#include "common/transport/run_folder.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 
@@ -50,7 +51,9 @@ class Host {
     if (seen_.track().segments.empty()) return WhyNoTrack();
     if (!sensed_) {
       return NoDevice("no footingd: " + sensor_link_ +
-                      "; start it with: footingd, or name its address with --sensor");
+                      transport::RemedyFor(sensor_link_,
+                                           "start it with: footingd, or name its address with "
+                                           "--sensor"));
     }
     return MakeReport(director_.game(), seen_, PassedS());
   }
@@ -103,7 +106,9 @@ class Host {
                      " has no track: the game needs the gait engine; start it with: footing-sim");
     }
     return NoDevice("no footing-sim: " + link_ +
-                    "; start it with: footing-sim, or name its address with --simulation");
+                    transport::RemedyFor(link_,
+                                         "start it with: footing-sim, or name its address with "
+                                         "--simulation"));
   }
 
   double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns_); }

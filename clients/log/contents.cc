@@ -4,9 +4,11 @@
 #include <google/protobuf/message.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "common/recording/mapped_file.h"
 #include "common/recording/schema.h"
+#include "common/units/units.h"
 
 namespace footing::log_client {
 namespace {
@@ -59,6 +61,61 @@ std::string Text(const pb::Message& message, const char* name) {
   return message.GetReflection()->GetString(message, field);
 }
 
+/// How long the gaps of one server are, from the ticks around them, in the order of the file.
+class Losses {
+ public:
+  void OnMessage(std::uint64_t time_ns, std::uint32_t sequence) {
+    if (time_ns == newest_.time_ns && sequence == newest_.sequence) return;
+    previous_ = std::exchange(newest_, {time_ns, sequence});
+    // Behind a snapshot of the present come the ticks of the ring, which are older.
+    if (open_ && time_ns > before_ns_ && (after_ns_ == 0 || time_ns < after_ns_)) {
+      after_ns_ = time_ns;
+    }
+  }
+
+  void OnGap(std::uint64_t time_ns, std::uint64_t from, std::uint64_t to) {
+    Close();
+    // The last tick before it has the sequence before the first missing one; a snapshot may have
+    // come in between, which is then the first tick after it.
+    const auto last = static_cast<std::uint32_t>(from - 1);
+    const Tick& before =
+        newest_.sequence != last && previous_.sequence == last ? previous_ : newest_;
+    before_ns_ = before.time_ns;
+    after_ns_ = time_ns > before_ns_ ? time_ns : 0;
+    missing_ = to >= from ? to - from + 1 : 0;
+    open_ = before_ns_ > 0;
+  }
+
+  /// Adds the last gap to the sums.
+  void Close() {
+    if (!std::exchange(open_, false) || after_ns_ <= before_ns_) return;
+    const double between_s =
+        NanosecondsToSeconds(static_cast<std::int64_t>(after_ns_ - before_ns_));
+    if (missing_ == 0) {
+      restart_s_ += between_s;
+    } else {
+      missing_s_ += between_s * static_cast<double>(missing_) / static_cast<double>(missing_ + 1);
+    }
+  }
+
+  double missing_s() const { return missing_s_; }
+  double restart_s() const { return restart_s_; }
+
+ private:
+  struct Tick {
+    std::uint64_t time_ns = 0;
+    std::uint32_t sequence = 0;
+  };
+
+  Tick newest_, previous_;
+  bool open_ = false;
+  std::uint64_t before_ns_ = 0, after_ns_ = 0, missing_ = 0;
+  double missing_s_ = 0, restart_s_ = 0;
+};
+
+/// The beginning of a topic: "/footingd" for "/footingd/motion".
+std::string BeforeChannel(const std::string& topic) { return topic.substr(0, topic.find('/', 1)); }
+
 /// Fills Contents as the walk shows it.
 class Collector {
  public:
@@ -87,6 +144,11 @@ class Collector {
   }
 
   void Finish() {
+    for (auto& [server, losses] : losses_) {
+      losses.Close();
+      contents_.missing_s += losses.missing_s();
+      contents_.restart_s += losses.restart_s();
+    }
     for (auto& [topic, config] : configs_) contents_.configs.push_back(std::move(config));
     for (const auto& [id, entry] : topics_) contents_.topics.push_back(entry.topic);
     std::sort(contents_.topics.begin(), contents_.topics.end(),
@@ -97,6 +159,7 @@ class Collector {
   struct Entry {
     Topic topic;
     std::uint16_t schema_id = 0;
+    Losses* losses = nullptr;  ///< Those of its server.
   };
 
   void Count(const mcap::Message& message) {
@@ -109,6 +172,9 @@ class Collector {
     contents_.start_ns = contents_.messages == 0 ? time : std::min(contents_.start_ns, time);
     contents_.end_ns = std::max(contents_.end_ns, time);
     ++contents_.messages;
+    if (entry.losses == nullptr) entry.losses = &losses_[BeforeChannel(topic.name)];
+    const bool is_gap = EndsWith(topic.name, "/gaps");
+    if (!is_gap) entry.losses->OnMessage(time, message.sequence);
     if (EndsWith(topic.name, "/status") || EndsWith(topic.name, "/characters")) {
       if (const pb::Message* parsed = Parse(entry, message)) {
         const std::optional<bool> simulated = FindSimulated(*parsed);
@@ -118,11 +184,12 @@ class Collector {
       if (const pb::Message* parsed = Parse(entry, message)) {
         configs_[topic.name] = Text(*parsed, "json");
       }
-    } else if (EndsWith(topic.name, "/gaps")) {
+    } else if (is_gap) {
       ++contents_.gaps;
       if (const pb::Message* parsed = Parse(entry, message)) {
         const std::uint64_t from = Unsigned(*parsed, "from_sequence");
         const std::uint64_t to = Unsigned(*parsed, "to_sequence");
+        entry.losses->OnGap(time, from, to);
         if (to >= from)
           contents_.missing_ticks += to - from + 1;
         else
@@ -140,6 +207,7 @@ class Collector {
   std::map<std::uint16_t, std::string> names_;
   std::map<std::uint16_t, Entry> topics_;
   std::map<std::string, std::string> configs_;  ///< By topic.
+  std::map<std::string, Losses> losses_;        ///< By server.
 };
 
 }  // namespace

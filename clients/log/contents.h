@@ -47,6 +47,8 @@ struct Contents {
   std::uint64_t missing_ticks = 0;
   /// Gaps over a restart of a server: nobody knows how many ticks are missing there.
   std::uint64_t restarts = 0;
+  double missing_s = 0;  ///< Time of the missing ticks.
+  double restart_s = 0;  ///< From the last tick before each restart to the first one after it.
   mcap::WalkEnd end;
 };
 

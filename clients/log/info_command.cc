@@ -32,7 +32,9 @@ ordered_json ToJson(const Contents& contents) {
       {"simulated", contents.simulated ? ordered_json(*contents.simulated) : ordered_json(nullptr)},
       {"gaps", contents.gaps},
       {"missing_ticks", contents.missing_ticks},
-      {"restarts", contents.restarts}};
+      {"missing_s", contents.missing_s},
+      {"restarts", contents.restarts},
+      {"restart_s", contents.restart_s}};
   if (!contents.end.complete) {
     out["problem"] = contents.end.problem;
     out["problem_byte"] = contents.end.problem_offset;
@@ -87,6 +89,19 @@ void PrintConfig(const std::string& text) {
   std::cout << " (all values: --json)\n";
 }
 
+/// Ticks that are missing, and the time in which there were none.
+std::string LossLine(const Contents& contents) {
+  std::string line = "gaps: " + std::to_string(contents.gaps) +
+                     ", ticks missing: " + std::to_string(contents.missing_ticks);
+  if (contents.missing_ticks > 0) line += " (" + text::Fixed(contents.missing_s, 2) + " s)";
+  if (contents.restarts > 0) {
+    line += ", and " + text::Fixed(contents.restart_s, 2) + " s without ticks over " +
+            std::to_string(contents.restarts) + " server restart" +
+            (contents.restarts == 1 ? "" : "s");
+  }
+  return line;
+}
+
 void PrintText(const Contents& contents) {
   std::cout << contents.path << ": " << contents.bytes << " bytes, written by " << contents.library
             << "\n"
@@ -97,11 +112,7 @@ void PrintText(const Contents& contents) {
                 : *contents.simulated ? "SIMULATED"
                                       : "real devices")
             << "\n"
-            << "gaps: " << contents.gaps << ", ticks missing: " << contents.missing_ticks;
-  if (contents.restarts > 0) {
-    std::cout << ", not counting those of " << contents.restarts << " server restarts";
-  }
-  std::cout << "\n";
+            << LossLine(contents) << "\n";
   for (const Topic& topic : contents.topics) {
     std::cout << "  " << topic.name << "  " << topic.messages
               << (topic.messages == 1 ? " message  " : " messages  ");

@@ -21,8 +21,9 @@ void SiteFlags::Add(CLI::App& command) {
                      "Name of the site, letters, digits, - and _ (default: this host's name)");
   command.add_option("--seconds", seconds, "Duration, s (0: until SIGINT or SIGTERM)")
       ->check(CLI::Range(0.0, 1e9));
-  command.add_option("--metrics", metrics,
-                     "Unix socket with metrics for Prometheus, unix:PATH (default: none)");
+  command.add_option(
+      "--metrics", metrics,
+      "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH (default: none)");
 }
 
 Result<std::string> SiteFlags::Site() const {

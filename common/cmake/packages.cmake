@@ -3,8 +3,8 @@
 #
 # | package            | holds                                                                        |
 # |--------------------|------------------------------------------------------------------------------|
-# | footing-daemon     | footingd, its units, the udev rule                                           |
-# | footing-simulation | footing-sim, its units                                                       |
+# | footing-daemon     | footingd, its units and config file, the udev rule                           |
+# | footing-simulation | footing-sim, its units and config file                                       |
 # | footing-clients    | every other program: a new one needs no line here                            |
 # | footing-common     | data, messages (.proto), documentation, completion, the user and the group   |
 # | footing            | nothing: needs the others                                                    |
@@ -59,11 +59,18 @@ function(add_scripts package upper)
       endif()
     endforeach()
   endforeach()
+  # The administrator's settings: dpkg asks before it replaces one that was edited.
+  if(CONFIG_FILE)
+    file(WRITE ${made}/${package}/conffiles "${CONFIG_FILE}\n")
+    list(APPEND scripts ${made}/${package}/conffiles)
+  endif()
   set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA "${scripts}" PARENT_SCOPE)
 endfunction()
+set(CONFIG_FILE "")
 add_scripts(common COMMON common)
 set(UNITS "footingd.socket footingd-devices.socket footingd.service")
-set(UNITS_TO_STOP "${UNITS}")
+set(UNITS_TO_STOP "${UNITS} footingd-metrics.socket")
+set(CONFIG_FILE /etc/footing/footingd.json)
 # Both services have these folders; who is purged last deletes them.
 set(STATE_FOLDERS "/var/lib/footing /run/footing")
 set(OTHER_UNIT /usr/lib/systemd/system/footing-sim.service)
@@ -75,7 +82,8 @@ set(AFTER_INSTALL [[if command -v udevadm >/dev/null && [ -d /run/udev ]; then
 add_scripts(daemon DAEMON service)
 # The socket alone is enabled: it starts footing-sim for the first client, and nothing is computed before.
 set(UNITS "footing-sim.socket")
-set(UNITS_TO_STOP "footing-sim.socket footing-sim.service")
+set(UNITS_TO_STOP "footing-sim.socket footing-sim.service footing-sim-metrics.socket")
+set(CONFIG_FILE /etc/footing/footing-sim.json)
 set(OTHER_UNIT /usr/lib/systemd/system/footingd.service)
 set(AFTER_INSTALL ":")
 add_scripts(simulation SIMULATION service)

@@ -8,6 +8,7 @@
 #include "common/log/log.h"
 #include "common/timer/timer.h"
 #include "common/transport/framed_connection.h"
+#include "common/transport/run_folder.h"
 #include "common/transport/socket.h"
 #include "common/wire/wire.h"
 
@@ -95,7 +96,8 @@ class DeviceLink::Implementation : public std::enable_shared_from_this<Implement
 
   void WaitFor(const std::string& why) {
     if (why != waits_for_) {
-      log::Info("waiting for footingd: " + why + "; start it with: " + FootingdFor(options_.to));
+      const std::string start = "start it with: " + FootingdFor(options_.to);
+      log::Info("waiting for footingd: " + why + transport::RemedyFor(why, start));
     }
     waits_for_ = why;
     redial_.expires_after(kRedial);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "common/timer/timer.h"
-#include "common/transport/address.h"
 #include "common/transport/listener.h"
 #include "common/transport/socket.h"
 
@@ -108,16 +107,22 @@ class MetricsEndpoint::Implementation {
   }
 
   Result<void> Listen(boost::asio::io_context& io, const transport::Address& address) {
-    auto listener =
-        transport::Listener::Open(io, address, [desk = desk_](transport::Socket socket) {
+    transport::ListenSecurity security;
+    security.passed_in_clear = true;
+    auto listener = transport::Listener::Open(
+        io, address,
+        [desk = desk_](transport::Socket socket) {
           if (desk->connections < kMostConnections) {
             std::make_shared<Exchange>(std::move(socket.plain()), desk)->Start();
           }
-        });
+        },
+        security);
     if (!listener) return listener.error();
     listener_ = std::move(*listener);
     return {};
   }
+
+  const transport::Address& address() const { return listener_->address(); }
 
  private:
   std::shared_ptr<Desk> desk_;
@@ -127,9 +132,12 @@ class MetricsEndpoint::Implementation {
 Result<void> MetricsEndpoint::Check(const std::string& address) {
   const auto parsed = transport::ParseAddress(address);
   if (!parsed) return parsed.error();
-  if (!parsed->OverTcp()) return {};
-  return UsageError("metrics are served on a Unix socket only, not on " + address +
-                    "; use unix:PATH, with a proxy in front of it for a Prometheus server");
+  if (parsed->kind != transport::Address::Kind::kTls && transport::StaysOnThisHost(*parsed)) {
+    return {};
+  }
+  return UsageError("metrics will not be served on " + address +
+                    ": they are neither encrypted nor protected by a token, so they stay on this "
+                    "host; use tcp:127.0.0.1:PORT or unix:PATH, with a proxy for other hosts");
 }
 
 Result<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Open(boost::asio::io_context& io,
@@ -147,5 +155,6 @@ Result<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Open(boost::asio::io_c
 MetricsEndpoint::MetricsEndpoint(std::unique_ptr<Implementation> implementation)
     : implementation_(std::move(implementation)) {}
 MetricsEndpoint::~MetricsEndpoint() = default;
+const transport::Address& MetricsEndpoint::address() const { return implementation_->address(); }
 
 }  // namespace footing::monitoring

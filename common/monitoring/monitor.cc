@@ -17,7 +17,7 @@ Result<void> Monitor::Serve(boost::asio::io_context& io, const std::string& addr
   });
   if (!opened) return opened.error();
   endpoint_ = std::move(*opened);
-  log::Info("metrics on " + address);
+  log::Info("metrics on " + endpoint_->address().Text());
   return {};
 }
 

@@ -19,7 +19,7 @@ class Monitor {
   /// The server outlives it, and has StatsChannel().
   Monitor(const transport::Server& server, double tick_rate_hz, Program program);
 
-  /// Serves metrics on unix:PATH; nowhere when the address is empty.
+  /// Serves metrics on an address of MetricsEndpoint; nowhere when it is empty.
   Result<void> Serve(boost::asio::io_context& io, const std::string& address);
   /// No metrics any more.
   void Stop() { endpoint_.reset(); }

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/transport/handshake.h"
+#include "common/transport/run_folder.h"
 #include "common/transport/socket.h"
 #include "common/transport/token.h"
 
@@ -80,7 +81,7 @@ v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_
 }
 
 std::string WaitingText(const std::string& dial_error, const std::string& last_reason) {
-  return "cannot connect to " + dial_error +
+  return "cannot connect to " + dial_error + RemedyFor(dial_error, "") +
          (last_reason.empty() ? "" : "; the last one said: " + last_reason);
 }
 

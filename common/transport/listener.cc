@@ -128,9 +128,9 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
                         "; start by the socket unit, or listen on unix:PATH");
     }
     const bool over_tcp = name.ss_family == AF_INET || name.ss_family == AF_INET6;
-    if (over_tcp) {
+    if (over_tcp && !security_.passed_in_clear) {
       if (auto prepared = PrepareTls(); !prepared) return prepared;
-    } else if (name.ss_family != AF_UNIX) {
+    } else if (!over_tcp && name.ss_family != AF_UNIX) {
       return UsageError("the socket passed as " + address_.path + " is neither Unix's nor TCP's");
     }
     // A copy: closing it must not close what the manager passed.
@@ -138,7 +138,13 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
     error_code error;
     acceptor_.assign(asio::generic::stream_protocol(name.ss_family, 0), own, error);
     if (own < 0 || error) return ListenError(address_, error);
-    return over_tcp ? TakeBound(Address::Kind::kTls) : Result<void>();
+    if (!over_tcp) return {};
+    if (!security_.passed_in_clear) return TakeBound(Address::Kind::kTls);
+    const std::string passed_as = address_.Text();
+    if (const auto bound = TakeBound(Address::Kind::kTcp); !bound) return bound;
+    if (StaysOnThisHost(address_)) return {};
+    return UsageError("will not listen on " + address_.Text() + ", passed as " + passed_as +
+                      ": it is not encrypted; let its socket unit listen on 127.0.0.1");
   }
 
   Result<void> OpenTcp(const Endpoint& endpoint) {

@@ -17,6 +17,8 @@ struct ListenSecurity {
   /// does.
   std::function<Result<tls::Context>()> tls;
   bool insecure_lan = false;  ///< Listen on tcp: beyond loopback, not encrypted.
+  /// A socket of TCP that was passed speaks in clear, and is refused beyond loopback.
+  bool passed_in_clear = false;
 };
 
 /// Accepts connections on one address and hands over their sockets.

@@ -8,6 +8,11 @@
 namespace footing::transport {
 namespace {
 
+constexpr const char* kFolderOfService = "/run/footing";
+constexpr const char* kJoinGroup =
+    "; join the group that owns the socket, footing for that of the service: sudo usermod -aG "
+    "footing $USER, then log in again (docs/setup.md)";
+
 Error Unsafe(const std::string& folder, const std::string& why) {
   return Failure(
       "folder " + folder + " " + why +
@@ -48,6 +53,17 @@ Result<void> CheckFolderOf(const Address& address) {
   const bool in_it =
       address.kind == Address::Kind::kUnix && address.path.rfind(folder + "/", 0) == 0;
   return in_it ? CheckRunFolder(folder, geteuid()) : Result<void>();
+}
+
+std::string RemedyFor(const std::string& why, const std::string& otherwise) {
+  const auto says = [&](const char* words) { return why.find(words) != std::string::npos; };
+  if (says(kJoinGroup)) return "";
+  // Outside the group not even the names of the service's sockets can be seen, so the address is
+  // that of a server of one's own, which is missing.
+  const bool service_is_closed =
+      access(kFolderOfService, F_OK) == 0 && access(kFolderOfService, X_OK) != 0;
+  if (says("permission denied") || (says("no such file") && service_is_closed)) return kJoinGroup;
+  return otherwise.empty() ? "" : "; " + otherwise;
 }
 
 }  // namespace footing::transport

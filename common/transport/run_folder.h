@@ -26,4 +26,9 @@ Result<void> CheckRunFolder(const std::string& folder, uid_t own_user);
 /// CheckRunFolder for an address in the fallback folder; any other address passes.
 Result<void> CheckFolderOf(const Address& address);
 
+/// What a person does when no server answers, to be put behind `why`: "; " and `otherwise`, such as
+/// how to start one. Where this user may not open the service's sockets that would not help: then
+/// it is to join their group, or nothing where `why` says so already. Empty without `otherwise`.
+std::string RemedyFor(const std::string& why, const std::string& otherwise);
+
 }  // namespace footing::transport

@@ -16,7 +16,8 @@ from root import Root
 
 SKIPPED = 77
 NEXT_VERSION = "99.0"
-UNITS = ("footingd.service", "footingd.socket", "footingd-devices.socket", "footing-sim.service", "footing-sim.socket")
+UNITS = ("footingd.service", "footingd.socket", "footingd-devices.socket", "footing-sim.service", "footing-sim.socket",
+         "footingd-metrics.socket", "footing-sim-metrics.socket")
 # What the machine does by itself: footing-sim waits for its first client.
 ENABLED = ("footingd.service", "footingd.socket", "footingd-devices.socket", "footing-sim.socket")
 STATE = "var/lib/footing/roles.json"

@@ -18,9 +18,13 @@ UNPACKAGED = {"usr/share/doc/footing/LICENSE"}
 PLACES = {
     "footing-daemon": {"usr/bin/footingd", "usr/lib/systemd/system/footingd.service",
                        "usr/lib/systemd/system/footingd.socket", "usr/lib/systemd/system/footingd-devices.socket",
+                       "usr/lib/systemd/system/footingd-metrics.socket", "usr/lib/systemd/system/footingd-pause.service",
+                       "etc/footing/footingd.json",
                        "usr/lib/udev/rules.d/70-footing.rules", "usr/share/man/man8/footingd.8.gz"},
     "footing-simulation": {"usr/bin/footing-sim", "usr/lib/systemd/system/footing-sim.service",
-                           "usr/lib/systemd/system/footing-sim.socket", "usr/share/man/man8/footing-sim.8.gz"},
+                           "usr/lib/systemd/system/footing-sim.socket", "etc/footing/footing-sim.json",
+                           "usr/lib/systemd/system/footing-sim-metrics.socket",
+                           "usr/lib/systemd/system/footing-sim-pause.service", "usr/share/man/man8/footing-sim.8.gz"},
     "footing-clients": {"usr/bin/footing-ctl", "usr/bin/footing-view", "usr/share/man/man1/footing-ctl.1.gz",
                         "usr/lib/systemd/system/footing-relay@.service"},
     "footing-common": {"usr/lib/sysusers.d/footing.conf", "usr/share/footing/biped.json",
@@ -71,7 +75,7 @@ def check_places(owners):
     for unit in [file for name, (_, file) in owners.items() if "/systemd/system/" in name]:
         text = unit.read_text()
         assert "@FOOTING" not in text and "_CPack" not in text and "/local/" not in text, unit.name
-        for program in re.findall(r"^ExecStart=/(\S+)", text, re.M):
+        for program in re.findall(r"^ExecStart=/(usr/\S+)", text, re.M):
             assert program in owners, f"{unit.name} starts {program}, which no package has"
 
 
@@ -101,6 +105,9 @@ def check_control(package, file, folder):
         if path.exists():
             debian.run("sh", "-n", path)
             assert not re.search(r"@[A-Z_]+@", path.read_text()), f"{script} of {package}: a place is not filled in"
+    listed = folder / "DEBIAN/conffiles"
+    settings = {f"/{path.relative_to(folder)}" for path in (folder / "etc").rglob("*.json")}
+    assert set(listed.read_text().split() if listed.exists() else ()) == settings, f"{package}: dpkg would replace {settings}"
     about = folder / "usr/share/doc" / package
     first = gzip.decompress((about / "changelog.gz").read_bytes()).decode().split("\n")[0]
     assert first.startswith(f"footing ({version}) "), f"the changelog begins with {first}, not with {version}"

@@ -48,7 +48,6 @@ NOT_HERE = {
     r"/etc/footing/": "reads the administrator's settings",
     r"0\.0\.0\.0": "would listen to other hosts",
     r"wave\.csv": "reads a Kinect's recording; tests/clients/skeleton does",
-    r"/run/footing": "needs the system service",
     r"^footing-ctl discover": "needs the system bus and Avahi; scenario discovery has both",
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
     r"^footing-study (run|analyze|report|export)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",

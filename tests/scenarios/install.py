@@ -6,7 +6,9 @@ Installs footingd, footing-sim, footing-stream, units and data to a temporary pr
 from there, once with a data file missing in the installed folder to see that no other one is read.
 """
 import gzip
+import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -16,8 +18,8 @@ from harness import Stage, read_ticks
 PROGRAMS = ("footingd", "footing-sim", "footing-stream")
 
 
-def install(build, prefix):
-    for component in (*PROGRAMS, "completion", "data", "documentation", "system_user"):
+def install(build, prefix, components=(*PROGRAMS, "completion", "data", "documentation", "system_user")):
+    for component in components:
         done = subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--component", component],
                               capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 0, done.stderr
@@ -26,16 +28,21 @@ def install(build, prefix):
 def check_units(build, prefix):
     units = sorted((prefix / "lib/systemd/system").iterdir())
     names = [unit.name for unit in units]
-    assert names == ["footing-sim.service", "footing-sim.socket", "footingd-devices.socket",
-                     "footingd.service", "footingd.socket"], names
+    assert names == ["footing-sim-metrics.socket", "footing-sim-pause.service", "footing-sim.service", "footing-sim.socket",
+                     "footingd-devices.socket", "footingd-metrics.socket", "footingd-pause.service", "footingd.service",
+                     "footingd.socket"], names
     for unit in units:
         text = unit.read_text()
         assert "@FOOTING" not in text, f"{unit.name}: a place is not filled in"
         assert str(build) not in text and "/usr/local" not in text, unit.name
         for line in text.splitlines():
-            if line.startswith("ExecStart="):
-                program = pathlib.Path(line.removeprefix("ExecStart=").split()[0])
+            if line.startswith("ExecStart=") and "-pause" not in unit.name:
+                words = line.removeprefix("ExecStart=").split()
+                program, config = pathlib.Path(words[0]), pathlib.Path(words[words.index("--config") + 1])
                 assert program.parent == prefix / "bin" and program.is_file(), line
+                assert config.parent == prefix / "etc/footing" and config.is_file(), line
+                # A reload checks the same file first.
+                assert f"ExecReload={program} --config {config} --check-config\nExecReload=/bin/kill" in text, text
 
 
 def check_files(prefix):
@@ -45,10 +52,28 @@ def check_files(prefix):
                  "share/doc/footing/docs/examples/study.json", "share/doc/footing/docs/examples/short-study.json",
                  "share/man/man8/footingd.8.gz", "share/man/man1/footing-stream.1.gz",
                  "share/bash-completion/completions/footing",
-                 "lib/udev/rules.d/70-footing.rules", "lib/sysusers.d/footing.conf"):
+                 "share/footing/prometheus-alerts.yml", "lib/udev/rules.d/70-footing.rules", "lib/sysusers.d/footing.conf"):
         assert (prefix / name).is_file(), f"{name} is not installed"
     page = gzip.decompress((prefix / "share/man/man8/footingd.8.gz").read_bytes()).decode()
     assert "\\-\\-listen" in page
+
+
+def check_config_files(build, prefix):
+    """The config files hold defaults and comments, every setting in a comment is one, and an edited file stays."""
+    for program in ("footingd", "footing-sim"):
+        def settings(*words):
+            done = subprocess.run([prefix / "bin" / program, "--print-config", *words], capture_output=True, text=True,
+                                  timeout=60, check=False)
+            assert done.returncode == 0, done.stderr
+            return json.loads(done.stdout)
+        file = prefix / "etc/footing" / f"{program}.json"
+        assert settings("--config", file) == settings(), f"{file.name} changes a default"
+        text, count = re.subn(r'^  // (")', r"  \1", file.read_text(), flags=re.M)
+        assert count >= 5, text
+        file.write_text(text)
+        assert settings("--config", file)["metrics"] == "fd:metrics"
+        install(build, prefix, (program,))
+        assert file.read_text() == text, f"{file.name}: the administrator's settings are lost"
 
 
 def check_line(prefix):
@@ -77,6 +102,7 @@ def main(build):
         install(build, prefix)
         check_files(prefix)
         check_units(build, prefix)
+        check_config_files(build, prefix)
         check_line(prefix)
         check_data(prefix)
     print("installed, run and read from " + prefix.name)

@@ -6,6 +6,7 @@ Usage: operations.py BINARY_FOLDER
 import http.client
 import json
 import os
+import pathlib
 import re
 import signal
 import socket
@@ -13,6 +14,7 @@ import sys
 import time
 
 from harness import Stage
+from ports import free_port
 
 try:
     from prometheus_client.parser import text_string_to_metric_families
@@ -23,14 +25,17 @@ except ImportError:  # Another Python than Debian's, which has the package.
 UNITS = ("seconds", "hertz", "bytes", "ratio", "ticks")
 COUNTED = ("footing_sessions", "footing_build_info", "footing_device_live", "process_open_fds", "footing_relay_broker_up",
            "footing_relay_source_up", "footing_relay_serving")
+ALERTS = pathlib.Path(__file__).resolve().parents[2] / "systemd/prometheus-alerts.yml"
+OF_PROMETHEUS = ("up",)  # What it adds to each target itself.
+LABELS_OF_PROMETHEUS = {"job", "instance"}
 MOST_STOP_S = 6  # Of which footingd waits 1 s at most for its clients.
 PAUSE_S = 0.4  # Beyond the 0.1 s of ticks that are made up for.
 
 
 class UnixHttp(http.client.HTTPConnection):
-    def __init__(self, address):
+    def __init__(self, path):
         super().__init__("footing", timeout=10)
-        self.path = address.removeprefix("unix:")
+        self.path = path
 
     def connect(self):
         self.sock = socket.socket(socket.AF_UNIX)
@@ -40,7 +45,8 @@ class UnixHttp(http.client.HTTPConnection):
 
 def metrics_of(address):
     """Samples by name: a list of (labels, value)."""
-    connection = UnixHttp(address)
+    kind, _, place = address.partition(":")
+    connection = UnixHttp(place) if kind == "unix" else http.client.HTTPConnection(place, timeout=10)
     connection.request("GET", "/metrics")
     response = connection.getresponse()
     text = response.read().decode()
@@ -55,6 +61,32 @@ def metrics_of(address):
         for sample in family.samples:
             samples.setdefault(sample.name, []).append((sample.labels, sample.value))
     return samples
+
+
+def check_alerts(samples, metric_of):
+    """The alerts on some of the metrics name metrics, and labels in their texts, that the servers really have."""
+    checked = 0
+    for rule in ALERTS.read_text().split("- alert: ")[1:]:
+        name = rule.split()[0]
+        expression = re.search(r"^ +expr: (.+)$", rule, re.M)[1]
+        metrics = set(re.findall(r"\b((?:footing|process)_\w+|up)\b", expression)) - set(OF_PROMETHEUS)
+        used = {metric for metric in metrics if metric_of(metric)}
+        if not used:
+            continue
+        assert used <= set(samples), f"{name}: no server has {used - set(samples)}"
+        labels = set.intersection(*(set(samples[metric][0][0]) for metric in used)) | LABELS_OF_PROMETHEUS
+        told = set(re.findall(r"\$labels\.(\w+)", rule)) | set(re.findall(r"[{,](\w+)=", expression))
+        assert told <= labels, f"{name}: no label {told - labels}"
+        checked += 1
+    assert checked, "no alert"
+    return checked
+
+
+def check_metrics_take_no_commands(stage, metrics):
+    """Whoever reads the metrics over TCP finds no way to command the server there."""
+    done = stage.run("footing-ctl", "--connect", metrics["simulation"], "layout", "--preset", "single")
+    assert done.returncode != 0, done.stdout
+    assert metrics_of(metrics["simulation"])["footing_uptime_seconds"], "it goes on"
 
 
 def log_of(stage, name):
@@ -92,7 +124,10 @@ def check_status_and_metrics(stage, metrics):
     assert all(0 <= ratio <= 1 for _, ratio in samples["footing_device_battery_ratio"]), samples
     assert {"footing-sim"} <= {labels["client"] for labels, _ in samples["footing_session_lag_seconds"]}, samples
     assert 1e6 < samples["process_resident_memory_bytes"][0][1] < 1e9, samples
-    assert "footing_ticks_total" in metrics_of(metrics["simulation"])
+    of_simulation = metrics_of(metrics["simulation"])
+    assert "footing_ticks_total" in of_simulation
+    rules = check_alerts(samples, lambda metric: not metric.startswith("footing_relay_"))
+    print(f"{rules} alerts name metrics of footingd")
 
 
 def check_metrics_limits(metrics):
@@ -192,16 +227,17 @@ def main(binaries):
         config = stage.folder / "footingd.json"
         check_origins(stage, config)
         config.write_text("{}")
-        metrics = {name: f"unix:{stage.folder}/{name}-metrics.sock" for name in ("sensor", "simulation")}
+        metrics = {"sensor": f"unix:{stage.folder}/sensor-metrics.sock", "simulation": f"tcp:127.0.0.1:{free_port()}"}
         stage.start("footingd", "--config", config, "--listen", stage.sensor, "--source", f"stream:{stage.devices}",
                     "--metrics", metrics["sensor"])
         stage.wait_for_socket(stage.devices)
         stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation, "--metrics",
                     metrics["simulation"])
-        stage.wait_for_socket(metrics["simulation"])
+        stage.wait_for(lambda: "metrics on tcp:127.0.0.1:" in log_of(stage, "footing-sim"), "the metrics of footing-sim")
         stage.start_user("walk", "--seconds", 120)
         check_status_and_metrics(stage, metrics)
         check_metrics_limits(metrics)
+        check_metrics_take_no_commands(stage, metrics)
         check_reload(stage, config)
         start_clients(stage)
         check_overload(stage, metrics)

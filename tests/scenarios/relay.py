@@ -15,7 +15,7 @@ import time
 import brokers
 import decode_stream
 from harness import Stage
-from operations import metrics_of
+from operations import check_alerts, metrics_of
 from ports import free_port
 
 SITE = "lab-1"
@@ -194,6 +194,7 @@ def check_metrics(stage, edge):
     assert value_of(publisher, "footing_relay_published_total") > 50 and value_of(publisher, "footing_relay_dropped_total") == 0
     assert value_of(serving, "footing_relay_serving") == 1 and value_of(serving, "footing_sessions") == 1, serving
     assert value_of(serving, "footing_relay_ticks_left_out_total") > 0, "100 Hz in, 30 out"
+    check_alerts({**serving, **publisher}, lambda metric: metric.startswith("footing_relay_"))
 
 
 def serves_nobody(edge_address):

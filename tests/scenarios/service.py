@@ -14,6 +14,7 @@ import subprocess
 import sys
 import termios
 import time
+import urllib.request
 
 import decode_stream
 import harness
@@ -219,11 +220,28 @@ def check_wrong_sockets(manager):
     assert "no socket was passed under the name tracker" in manager.log.read_text()
 
 
+def check_metrics(manager):
+    """Metrics on a passed socket of loopback speak in clear, to whoever reaches it; beyond loopback they are refused."""
+    manager.sockets["metrics"] = socket.create_server(("127.0.0.1", 0))
+    host, port = manager.sockets["metrics"].getsockname()
+    words = ("--listen", "fd:sensor", "--source", "stream:fd:devices", "--metrics", "fd:metrics")
+    manager.start(*words, names=(*SOCKETS, "metrics"))
+    manager.wait_for("READY=1", 60)
+    with urllib.request.urlopen(f"http://{host}:{port}/metrics", timeout=30) as answer:
+        assert b"footing_uptime_seconds" in answer.read()
+    check_farewell(manager)
+    manager.sockets["metrics"] = socket.create_server(("0.0.0.0", 0))
+    manager.start(*words, names=(*SOCKETS, "metrics"))
+    assert manager.wait_for_exit() == 2
+    assert "passed as fd:metrics: it is not encrypted" in manager.log.read_text(), manager.log.read_text()[-500:]
+
+
 def main(binaries):
     with harness.Stage(binaries) as stage:
         manager = Manager(binaries, stage.folder)
         try:
             check_start_to_end(stage, manager)
+            check_metrics(manager)
         finally:
             manager.close()
         words = (stage.binaries / "footingd", "--listen", f"unix:{stage.folder}/t.sock", "--source",

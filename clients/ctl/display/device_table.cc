@@ -135,8 +135,12 @@ ordered_json SetupToJson(const std::vector<stream::RigSetup>& rigs) {
 std::string SetupTable(const std::vector<stream::RigSetup>& rigs) {
   std::vector<std::vector<std::string>> rows = {
       {"rig", "setup", "device", "result", "date", "residual", "note"}};
+  bool is_set_up = false;
   for (const stream::RigSetup& rig : rigs) {
+    bool has_layout = false;
     for (const stream::SetupItem& item : rig.items) {
+      is_set_up = true;
+      has_layout = has_layout || item.name == "layout";
       rows.push_back({rig.rig, item.name, item.serial.empty() ? "-" : item.serial,
                       !item.passed ? "FAILED"
                       : item.stale ? "STALE"
@@ -145,8 +149,13 @@ std::string SetupTable(const std::vector<stream::RigSetup>& rigs) {
                       item.unit.empty() ? "-" : Fixed(item.residual, 2) + " " + item.unit,
                       item.note});
     }
+    // Chosen, but never checked with a person on the boards.
+    if (!rig.layout.preset.empty() && !has_layout) {
+      rows.push_back({rig.rig, "layout", "-", "set", "-", "-", rig.layout.preset});
+    }
   }
-  return rows.size() == 1 ? "nothing is set up yet: footing-ctl setup\n" : Table(rows);
+  if (rows.size() == 1) return "nothing is set up yet: footing-ctl setup\n";
+  return Table(rows) + (is_set_up ? "" : "nothing else is set up yet: footing-ctl setup\n");
 }
 
 }  // namespace footing::ctl::display

@@ -8,6 +8,7 @@
 #include "common/clock/clock.h"
 #include "common/log/log.h"
 #include "common/transport/channels_of.h"
+#include "common/transport/run_folder.h"
 
 namespace footing::relay {
 namespace {
@@ -88,7 +89,8 @@ Result<void> Publisher::CheckUseful() const {
     why += (why.empty() ? "" : "; ") + source->link();
   }
   if (!why.empty())
-    return NoDevice("no server to publish: " + why + "; start it, or name it with --connect");
+    return NoDevice("no server to publish: " + why +
+                    transport::RemedyFor(why, "start it, or name it with --connect"));
   if (published_ > 0) return {};
   return Failure("nothing was published: " + nats_state_ + (nats_ && mqtt_ ? "; " : "") +
                  mqtt_state_);

@@ -4,6 +4,7 @@
 
 #include "common/text/number.h"
 #include "common/transport/client.h"
+#include "common/transport/run_folder.h"
 
 namespace footing::study {
 namespace {
@@ -88,8 +89,9 @@ Result<RecordedRanges> MeasureRanges(Console& console, const transport::Address&
   const Waited waited = console.RunUntil([&] { return link.ticked(); }, kSensorWithinS);
   if (waited == Waited::kInterrupted) return Interrupted();
   if (waited == Waited::kTimeUp) {
-    return NoDevice("no footingd at " + sensor.Text() + ": " + link.why() +
-                    "; start it, or name its address with --sensor");
+    return NoDevice(
+        "no footingd at " + sensor.Text() + ": " + link.why() +
+        transport::RemedyFor(link.why(), "start it, or name its address with --sensor"));
   }
   const auto found = FindRig(console, link, rig, played);
   if (!found) return found.error();

@@ -6,6 +6,7 @@
 
 #include "clients/study/session/server_link.h"
 #include "common/stream/leg_turn.h"
+#include "common/transport/run_folder.h"
 #include "common/wire/wire.h"
 
 namespace footing::study {
@@ -110,8 +111,10 @@ Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const Options& 
                                      std::pair(&own->simulation_, own->simulation_ticked_)}) {
     if (!ticked && link->refused()) return Failure(link->Text());
     if (!ticked) {
-      return NoDevice("no " + link->Text() +
-                      "; start it, or name its address (footing-study run --help)");
+      return NoDevice(
+          "no " + link->Text() +
+          transport::RemedyFor(link->Text(),
+                               "start it, or name its address (footing-study run --help)"));
     }
   }
   for (ServerLink* link : {&own->simulation_, &own->sensor_}) {

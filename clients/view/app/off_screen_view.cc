@@ -12,6 +12,7 @@
 #include "common/clock/clock.h"
 #include "common/log/log.h"
 #include "common/text/number.h"
+#include "common/transport/run_folder.h"
 #include "common/units/units.h"
 
 namespace footing::view {
@@ -77,7 +78,11 @@ Result<void> TakeScreenshot(Studio& studio) {
   }
   const std::int64_t from_ns = studio.WaitForData();
   if (scene::IsWaiting(studio.show.model()) && !studio.options.camera.alone) {
-    log::Warning("no server has sent anything yet: start footing-sim, or name it with --connect");
+    std::string why = "no server has sent anything yet";
+    for (const scene::LinkReport& link : studio.show.model().links) {
+      if (!link.why.empty()) why += "; " + link.why;
+    }
+    log::Warning(why + transport::RemedyFor(why, "start footing-sim, or name it with --connect"));
   }
   const auto shot = studio.FollowUntil(from_ns + SecondsToNanoseconds(studio.AtS()));
   const auto written = studio.Shoot(shot, studio.options.screenshot);

@@ -14,6 +14,7 @@
 #include "clients/view/scene/show.h"
 #include "clients/view/scene/words.h"
 #include "common/clock/clock.h"
+#include "common/transport/run_folder.h"
 #include "common/units/units.h"
 
 namespace footing::view {
@@ -68,7 +69,8 @@ class TextView {
     if (refused != nullptr) return Failure(refused->why);
     if (!time_is_up_ || options_.camera.alone) return {};
     return NoDevice("no server: " + waited_for +
-                    "; start footing-sim, or name where it listens with --connect");
+                    transport::RemedyFor(
+                        waited_for, "start footing-sim, or name where it listens with --connect"));
   }
 
   double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns_); }

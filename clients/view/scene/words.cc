@@ -192,6 +192,8 @@ std::vector<std::string> WaitingLines(const LinkReport& link) {
   }
   // It was there: why it is not any more, in its own words where it gave some.
   if (!link.server_id.empty()) return {"Lost " + link.address, link.why};
+  // Where this user may not open the socket, to start another server would not help.
+  if (Names(link.why, "join the group")) return {"No access to " + link.address, link.why};
   if (Names(link.address, "simulation")) {
     return {"Waiting for a simulation server on " + link.address,
             "Start one with:  footing-sim --engine gait --listen " + link.address};

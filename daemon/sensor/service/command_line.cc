@@ -34,7 +34,8 @@ std::unique_ptr<CLI::App> NewParser(Given& given) {
   app->add_option(
       "--source", given.sources,
       "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated");
-  app->add_option("--metrics", given.metrics, "Unix socket with metrics for Prometheus, unix:PATH");
+  app->add_option("--metrics", given.metrics,
+                  "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH");
   app->add_flag(
       "--insecure-lan", given.insecure_lan,
       "Allow --listen tcp: beyond this host WITHOUT ENCRYPTION; needs --set token_file=FILE");

@@ -51,7 +51,8 @@ void Config::Bind(config::Binder& binder) {
                 "Interval of status requests to devices, s (0: never)");
   access.Bind(binder);
   binder.Text("metrics", metrics,
-              "Unix socket with metrics for Prometheus, unix:PATH (empty: none)");
+              "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH (empty: "
+              "none)");
   sessions.Bind(binder);
 }
 

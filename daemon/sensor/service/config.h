@@ -37,7 +37,7 @@ struct Config {
   double status_interval_s = 60;  ///< Between requests for the status of devices; 0: never.
   transport::SessionLimits sessions;
   transport::AccessSettings access;
-  std::string metrics;  ///< Where Prometheus metrics are served, unix:PATH; empty: nowhere.
+  std::string metrics;  ///< Where metrics are served (MetricsEndpoint); empty: nowhere.
 
   void Bind(config::Binder& binder);
 };

@@ -33,7 +33,8 @@ constexpr std::array kKeyOptions{
     KeyOption{"--subject", "subject", "Subject file of the pose engine, JSON"},
     KeyOption{"--mode", "mode",
               "Reconstruction mode of the pose engine: best or paper (default: best)"},
-    KeyOption{"--metrics", "metrics", "Unix socket with metrics for Prometheus, unix:PATH"},
+    KeyOption{"--metrics", "metrics",
+              "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH"},
     KeyOption{"--lag-ms", "lag_ms",
               "Output delay of the pose engine, ms: 0, 100 or 200; longer is more accurate "
               "(default: 0)"},

@@ -11,7 +11,8 @@ void Config::Bind(config::Binder& binder) {
               "Folder with biped.json, the mappings, the models and the tracks");
   access.Bind(binder);
   binder.Text("metrics", metrics,
-              "Unix socket with metrics for Prometheus, unix:PATH (empty: none)");
+              "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH (empty: "
+              "none)");
   sessions.Bind(binder);
 }
 

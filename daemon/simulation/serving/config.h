@@ -15,7 +15,7 @@ struct Config {
   std::vector<std::string> listen;  ///< Empty: the default one.
   std::string rig;                  ///< Whose motion commands; empty: the first one that can.
   std::string data_folder;          ///< In place of the installed data.
-  std::string metrics;  ///< Where Prometheus metrics are served, unix:PATH; empty: nowhere.
+  std::string metrics;              ///< Where metrics are served (MetricsEndpoint); empty: nowhere.
   transport::SessionLimits sessions;
   transport::AccessSettings access;
   std::string version;  ///< Of the program; not a setting.

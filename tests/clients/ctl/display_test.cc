@@ -171,6 +171,16 @@ TEST(SetupTable, TellsWhatIsStaleAndWhatFailed) {
   EXPECT_EQ(SetupTable({}), "nothing is set up yet: footing-ctl setup\n");
 }
 
+TEST(SetupTable, ALayoutThatWasSetIsASetup) {
+  stream::RigSetup rig;
+  rig.rig = "main";
+  rig.layout.preset = "one_foot_each";
+  EXPECT_EQ(SetupTable({rig}),
+            "rig   setup   device  result  date  residual  note\n"
+            "main  layout  -       set     -     -         one_foot_each\n"
+            "nothing else is set up yet: footing-ctl setup\n");
+}
+
 TEST(LiveScreen, DrawsABoardInKilograms) {
   EXPECT_EQ(LiveScreen(LiveBoard()),
             "connected\n\n"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "common/recording/recording_writer.h"
+#include "common/recording/stream_recorder.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
 
@@ -53,6 +54,46 @@ TEST_F(ContentsTest, ARestartOfAServerIsCountedApart) {
   EXPECT_EQ(contents->gaps, 1u);
   EXPECT_EQ(contents->missing_ticks, 0u);
   EXPECT_EQ(contents->restarts, 1u);
+}
+
+TEST_F(ContentsTest, TellsHowLongTheTicksAreMissing) {
+  auto writer = recording::RecordingWriter::Create(Path("a.mcap"), {"test", false, {}});
+  ASSERT_TRUE(writer.ok()) << writer.error().message;
+  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
+  v1::Welcome welcome;
+  welcome.set_server_id("footingd");
+  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  const auto tick_at = [&](std::uint64_t sequence, std::int64_t ms) {
+    v1::Tick tick;
+    tick.set_sequence(sequence);
+    tick.set_host_ns(ms * 1'000'000);
+    tick.mutable_motion();
+    ASSERT_TRUE(recorder.OnTick(tick, tick.host_ns()).ok());
+  };
+  v1::Gap dropped;
+  dropped.set_from_sequence(3);
+  dropped.set_to_sequence(22);
+  v1::Gap restarted;
+  restarted.set_from_sequence(25);
+  restarted.set_reason(v1::Gap::REASON_NEW_EPOCH);
+  tick_at(1, 1000);
+  tick_at(2, 1010);
+  ASSERT_TRUE(recorder.OnGap(dropped, 0).ok());
+  tick_at(23, 1220);  // 20 ticks of 10 ms in between.
+  tick_at(24, 1230);
+  // After a restart: a snapshot of the present, the gap, and the first ticks out of the ring.
+  tick_at(31, 4000);
+  ASSERT_TRUE(recorder.OnGap(restarted, 0).ok());
+  tick_at(1, 3700);
+  tick_at(2, 3710);
+  tick_at(32, 4010);
+  ASSERT_TRUE(writer->Finish().ok());
+  const auto contents = ReadContents(Path("a.mcap"));
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  EXPECT_EQ(contents->missing_ticks, 20u);
+  EXPECT_NEAR(contents->missing_s, 20 * 0.010, 1e-9);
+  EXPECT_EQ(contents->restarts, 1u);
+  EXPECT_NEAR(contents->restart_s, 3.700 - 1.230, 1e-9);
 }
 
 TEST_F(ContentsTest, TheSameStreamGivesTheSameBytes) {

@@ -43,6 +43,14 @@ TEST(WaitingLines, SayWhatIsMissingAndHowToStartIt) {
             (std::vector<std::string>{"No connection to the server", link.why}));
 }
 
+TEST(WaitingLines, WhoMayNotOpenTheSocketIsNotAskedToStartAServer) {
+  const LinkReport link{"unix:/run/footing/simulation.sock", "", LinkState::kConnecting,
+                        "waiting for unix:/run/footing/simulation.sock: permission denied; join "
+                        "the group that owns the socket"};
+  EXPECT_EQ(WaitingLines(link),
+            (std::vector<std::string>{"No access to " + link.address, link.why}));
+}
+
 TEST(WaitingLines, ARefusalIsShownInTheServersOwnWords) {
   LinkReport link{"tcp:127.0.0.1:1", "", LinkState::kRefused, "update the viewer"};
   EXPECT_EQ(WaitingLines(link)[1], "update the viewer");

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
@@ -102,11 +103,37 @@ TEST_F(MetricsEndpointTest, ItsSocketIsForTheGroupAlone) {
   EXPECT_NE(stat(UnixAddress().path.c_str(), &file), 0) << "it is removed at the end";
 }
 
-TEST_F(MetricsEndpointTest, TcpIsRefusedWithTheReason) {
-  const auto opened = MetricsEndpoint::Open(io_, "tcp:127.0.0.1:0", [] { return std::string(); });
-  ASSERT_FALSE(opened.ok());
-  EXPECT_EQ(opened.error().kind, ErrorKind::kUsage);
-  EXPECT_TRUE(Has(opened.error().message, "Unix socket only")) << opened.error().message;
+TEST_F(MetricsEndpointTest, TcpOfThisHostIsServed) {
+  const auto opened =
+      MetricsEndpoint::Open(io_, "tcp:127.0.0.1:0", [] { return std::string("page"); });
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  ASSERT_GT((*opened)->address().port, 0);
+  asio::ip::tcp::socket socket(io_);
+  socket.connect({asio::ip::address_v4::loopback(), (*opened)->address().port});
+  asio::write(socket, asio::buffer(std::string("GET /metrics HTTP/1.0\r\n\r\n")));
+  std::string answer;
+  bool over = false;
+  asio::async_read(socket, asio::dynamic_buffer(answer),
+                   [&](const boost::system::error_code&, std::size_t) { over = true; });
+  EXPECT_TRUE(RunUntil([&] { return over; }));
+  EXPECT_TRUE(answer.ends_with("\r\n\r\npage")) << answer;
+}
+
+TEST_F(MetricsEndpointTest, AddressesBeyondThisHostAreRefusedWithTheReason) {
+  for (const std::string address : {"tcp:0.0.0.0:0", "tcp:[::]:0", "tcp:192.168.1.5:9100",
+                                    "tcp:example.org:9100", "tls:127.0.0.1:9100"}) {
+    const auto opened = MetricsEndpoint::Open(io_, address, [] { return std::string(); });
+    ASSERT_FALSE(opened.ok()) << address;
+    EXPECT_EQ(opened.error().kind, ErrorKind::kUsage);
+    EXPECT_TRUE(Has(opened.error().message, "use tcp:127.0.0.1:PORT or unix:PATH"))
+        << opened.error().message;
+  }
+}
+
+TEST_F(MetricsEndpointTest, BytesOfTheProtocolAreNoRequest) {
+  // A Hello of 4 bytes, as a client begins: whoever reaches this socket cannot open a session.
+  EXPECT_TRUE(Has(Ask(std::string("\x06\0\0\0\x0a\x04\x08\x01\x18\x02\r\n\r\n", 14)), " 400 "));
+  EXPECT_EQ(pages_, 0);
 }
 
 }  // namespace

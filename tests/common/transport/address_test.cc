@@ -56,6 +56,19 @@ TEST(Address, TheDefaultNamesTheServer) {
   EXPECT_NE(address.path.find("/sensor.sock"), std::string::npos);
 }
 
+TEST(Address, WhoMayNotOpenTheSocketJoinsItsGroupInPlaceOfStartingAServer) {
+  const std::string start = "start footing-sim";
+  EXPECT_EQ(RemedyFor("tcp:127.0.0.1:7710: connection refused", start), "; start footing-sim");
+  EXPECT_EQ(RemedyFor("tcp:127.0.0.1:7710: connection refused", ""), "");
+  const std::string denied = "unix:/run/footing/simulation.sock: permission denied";
+  const std::string remedy = RemedyFor(denied, start);
+  EXPECT_NE(remedy.find("; join the group"), std::string::npos) << remedy;
+  EXPECT_NE(remedy.find("usermod -aG footing"), std::string::npos) << remedy;
+  EXPECT_NE(remedy.find("log in again (docs/setup.md)"), std::string::npos) << remedy;
+  EXPECT_EQ(remedy.find("start"), std::string::npos) << remedy;
+  EXPECT_EQ(RemedyFor(denied + remedy, start), "") << "once is enough";
+}
+
 TEST(RunFolder, OnlyAFolderOfTheOwnUserAloneIsTrusted) {
   const test::TemporaryFolder folder;
   const std::string own = folder.Path("own"), link = folder.Path("link"),

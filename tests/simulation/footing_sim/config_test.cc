@@ -47,13 +47,15 @@ TEST(FootingSimConfig, AnAddressThatIsNoneIsRefusedBeforeAnythingListens) {
   EXPECT_THAT(checked.error().message, HasSubstr("--sensor: \"nonsense\" is not an address"));
 }
 
-TEST(FootingSimConfig, MetricsAreServedOnAUnixSocketOnly) {
+TEST(FootingSimConfig, MetricsStayOnThisHost) {
   Config config;
   config.serving.metrics = "unix:/tmp/metrics.sock";
   EXPECT_TRUE(Check(config));
   config.serving.metrics = "tcp:127.0.0.1:9100";
+  EXPECT_TRUE(Check(config));
+  config.serving.metrics = "tcp:0.0.0.0:9100";
   ASSERT_FALSE(Check(config));
-  EXPECT_THAT(Check(config).error().message, HasSubstr("on a Unix socket only"));
+  EXPECT_THAT(Check(config).error().message, HasSubstr("they stay on this host"));
 }
 
 TEST(FootingSimConfig, EveryInterfaceIsKnownAndCarriesItsOptions) {
