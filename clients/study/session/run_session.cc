@@ -49,6 +49,9 @@ Result<journal::Lock> LockStudy(const SessionOptions& options) {
   const std::string& folder = options.study_folder;
   auto lock = journal::Lock::Take(folder + "/lock", "the study", Holder(options));
   if (!lock) return lock;
+  if (options.unattended) {
+    if (const auto done = journal::RequireNoPerson(folder); !done) return done.error();
+  }
   if (const auto done = journal::KeepProtocol(folder, options.protocol_text); !done) {
     return done.error();
   }
