@@ -207,6 +207,38 @@ TEST(Rating, IsAWholeNumberOfTheScaleAndNothingElse) {
   }
 }
 
+TEST(Choice, IsTheNameOrTheNumberOfOneOfThem) {
+  const std::vector<std::string> interfaces = {"wrist", "arm"};
+  EXPECT_EQ(screen::ParseChoice("arm", interfaces), "arm");
+  EXPECT_EQ(screen::ParseChoice(" Wrist ", interfaces), "wrist");
+  EXPECT_EQ(screen::ParseChoice("2", interfaces), "arm");
+  for (const char* wrong : {"", "0", "3", "leg", "wrist arm", "-1"}) {
+    EXPECT_EQ(screen::ParseChoice(wrong, interfaces), std::nullopt) << wrong;
+  }
+  EXPECT_EQ(screen::ChoiceLine(interfaces), "1 wrist   2 arm");
+  screen::Shown shown{.number = 1, .item = "preferred interface", .choices = interfaces};
+  EXPECT_TRUE(screen::Answers(shown, "arm"));
+  EXPECT_FALSE(screen::Answers(shown, "the arm"));
+  const auto read = screen::ParseShown(screen::ToText(shown));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, shown);
+  // Of a session that knows of no choices.
+  const auto older = screen::ParseShown(
+      R"({"number":1,"title":"","item":"good","scale":"","least":0,"greatest":0,"position":1,"count":1})");
+  ASSERT_TRUE(older) << older.error().message;
+  EXPECT_TRUE(screen::Answers(*older, "anything"));
+}
+
+TEST(Respondent, ChoosesEachAboutEquallyOften) {
+  std::map<std::string, int> times;
+  for (int i = 0; i < 3000; ++i) {
+    ++times[Respondent{3, "P1"}.Choose("", "q" + std::to_string(i), {"wrist", "arm"})];
+  }
+  // 1500 each, standard deviation sqrt(3000 / 4) = 27.4; five of them.
+  EXPECT_NEAR(times["wrist"], 1500, 137);
+  EXPECT_EQ(times["wrist"] + times["arm"], 3000);
+}
+
 /// The standard input and the standard error of the program, for one case.
 class Terminal {
  public:
