@@ -211,6 +211,32 @@ TEST_F(HudPictureTest, AStudyIsSeenByItsExperimenterAloneAtEverySize) {
                  });
 }
 
+TEST_F(HudPictureTest, ADeviceIsNotShownAsLiveWhileItsServerIsNotThere) {
+  const scene::made::Wish wish;
+  scene::Model model = scene::made::ModelAfter(12, wish);
+  model.links = {{"unix:/s", "footingd", scene::LinkState::kLive, ""}};
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  scene::Stage stage;
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  Resize(kWidth, kHeight);
+  const HudContent content{picture, model, frame, now_ns, model, now_ns};
+  const auto box = BoxesOf(content, {}, {kWidth, kHeight}, 1).devices;
+  ASSERT_TRUE(box);
+  const auto share_of_green = [&](const std::string& name) {
+    const Image image = Show(picture, model, frame, now_ns, {}, name);
+    // The dots of the devices, at the left edge below the bar of the response.
+    const Region dots{(box->low.x + 10) / kWidth, (box->low.x + 26) / kWidth,
+                      (box->low.y + 106) / kHeight, box->high.y / kHeight};
+    return ShareOf(
+        image, [](int red, int green, int blue) { return green > 180 && red < 130 && blue < 170; },
+        dots);
+  };
+  EXPECT_GT(share_of_green("devices_live"), 0.002);
+  model.links[0].state = scene::LinkState::kConnecting;
+  EXPECT_EQ(share_of_green("devices_unknown"), 0);
+}
+
 TEST_F(HudPictureTest, TheInterfacePanelStaysInItsBoxForEveryInterface) {
   for (const auto interface : stream::kUserInterfaces) {
     scene::made::Wish wish;
