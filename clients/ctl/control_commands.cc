@@ -7,6 +7,7 @@
 #include "clients/ctl/display/device_table.h"
 #include "clients/ctl/display/find_device.h"
 #include "common/cli/cli.h"
+#include "common/text/joined.h"
 
 namespace footing::ctl {
 namespace {
@@ -101,7 +102,7 @@ Result<Tared> TareOne(Session& session, const DeviceStatus& device, bool clear) 
   command.mutable_tare()->set_serial(device.serial);
   command.mutable_tare()->set_clear(clear);
   const auto done = session.Call(std::move(command), kTareWithinS);
-  if (!done) return Failure(device.serial + ": " + done.error().message);
+  if (!done) return done.error();
   Tared tared;
   tared.out = {{"device", device.device},
                {"serial", device.serial},
@@ -114,32 +115,51 @@ Result<Tared> TareOne(Session& session, const DeviceStatus& device, bool clear) 
   return tared;
 }
 
-Result<void> Tare(Session& session, const std::string& name, bool clear, const Shared& shared) {
-  std::vector<DeviceStatus> boards;
-  if (name == "all") {
-    for (const DeviceStatus& device : session.status()) {
-      const bool there = device.state != stream::DeviceState::kLost;
-      if (there && device.kind == stream::DeviceKind::kBalanceBoard) boards.push_back(device);
-    }
-    if (boards.empty()) return NoDevice("footingd has no board");
-  } else {
-    const auto device = session.Find(name);
-    if (!device) return device.error();
-    if (device->kind != stream::DeviceKind::kBalanceBoard) {
-      return UsageError(device->serial + " is not a Balance Board but a " +
-                        stream::Name(device->kind));
-    }
-    boards.push_back(*device);
-  }
-  ordered_json tared = ordered_json::array();
-  std::string text;
-  for (const DeviceStatus& board : boards) {
+/// All that are there. Those that are not tared are named, each with the reason.
+Result<void> TareAll(Session& session, bool clear, const Shared& shared) {
+  const display::Boards boards = display::BoardsOf(session.status());
+  if (boards.there.empty() && boards.lost.empty()) return NoDevice("footingd has no board");
+  ordered_json tared = ordered_json::array(), missed = ordered_json::array();
+  std::vector<std::string> texts, reasons;
+  const auto miss = [&](const DeviceStatus& board, const std::string& reason) {
+    missed.push_back({{"device", board.device},
+                      {"serial", board.serial},
+                      {"role", stream::Name(board.role)},
+                      {"reason", reason}});
+    reasons.push_back(board.serial + " (" + display::RigRole(board) + "): " + reason);
+  };
+  for (const DeviceStatus& board : boards.there) {
     const auto one = TareOne(session, board, clear);
-    if (!one) return one.error();
-    text += (text.empty() ? "" : "\n") + one->text;
-    tared.push_back(one->out);
+    if (one) {
+      texts.push_back(one->text);
+      tared.push_back(one->out);
+    } else {
+      miss(board, one.error().message);
+    }
   }
-  Print({{"boards", tared}}, text, shared);
+  const bool refused = !reasons.empty();
+  for (const DeviceStatus& board : boards.lost) {
+    miss(board, "lost; press its button, then run this command again");
+  }
+  if (shared.json || !texts.empty()) {
+    Print({{"boards", tared}, {"not_tared", missed}}, text::Joined(texts, "\n"), shared);
+  }
+  if (reasons.empty()) return {};
+  const std::string all =
+      std::string(clear ? "tare not removed: " : "not tared: ") + text::Joined(reasons, "; ");
+  return refused ? Failure(all) : NoDevice(all);
+}
+
+Result<void> Tare(Session& session, const std::string& name, bool clear, const Shared& shared) {
+  if (name == "all") return TareAll(session, clear, shared);
+  const auto board = session.Find(name);
+  if (!board) return board.error();
+  if (board->kind != stream::DeviceKind::kBalanceBoard) {
+    return UsageError(board->serial + " is not a Balance Board but a " + stream::Name(board->kind));
+  }
+  const auto tared = TareOne(session, *board, clear);
+  if (!tared) return Failure(board->serial + ": " + tared.error().message);
+  Print({{"boards", ordered_json::array({tared->out})}}, tared->text, shared);
   return {};
 }
 
@@ -151,6 +171,7 @@ Result<void> Assign(Session& session, const std::string& name, const std::string
   if (!binding) return binding.error();
   const auto device = session.Find(name);
   if (!device) return device.error();
+  const std::vector<DeviceStatus> before = session.status();
   v1::Command command;
   command.mutable_assign_role()->set_serial(device->serial);
   command.mutable_assign_role()->set_rig(binding->first);
@@ -178,6 +199,14 @@ Result<void> Assign(Session& session, const std::string& name, const std::string
                       {"rig", one->rig},
                       {"role", stream::Name(one->role)}};
   std::string text = one->serial + " is now " + display::RigRole(*one);
+  for (const DeviceStatus& other : display::Reassigned(before, session.status())) {
+    if (other.device == one->device) continue;
+    out["swapped"] = {{"device", other.device},
+                      {"serial", other.serial},
+                      {"rig", other.rig},
+                      {"role", stream::Name(other.role)}};
+    text += ", " + other.serial + " is now " + display::RigRole(other);
+  }
   AddRemark(*done, out, text);
   Print(out, text, shared);
   return {};

@@ -71,8 +71,9 @@ class ScreenClient {
     const auto line = console_.TakeLine();
     if (!line || shown_.number == 0 || !connection_ || !connection_->open()) return;
     if (!screen::Answers(shown_, *line)) {
-      return Draw("Type a number from " + std::to_string(shown_.least) + " to " +
-                  std::to_string(shown_.greatest) + ".");
+      return Draw(shown_.is_rating() ? "Type a number from " + std::to_string(shown_.least) +
+                                           " to " + std::to_string(shown_.greatest) + "."
+                                     : "Type one of them: the number or the name.");
     }
     connection_->Send(
         screen::ToText(screen::Reply{shown_.number, line->substr(0, screen::kMostAnswerBytes)}));
@@ -89,9 +90,14 @@ class ScreenClient {
       }
       text += "\n\n  " + shown_.scale + "\n\n";
     }
+    for (std::size_t i = 0; i < shown_.choices.size(); ++i) {
+      text += "    " + std::to_string(i + 1) + "  " + shown_.choices[i] + "\n";
+    }
+    if (!shown_.choices.empty()) text += "\n";
     text += hint.empty() ? "" : "  " + hint + "\n\n";
-    console_.Print(text + (shown_.is_rating() ? "  Type a number and press Enter:"
-                                              : "  Type one line and press Enter:"));
+    const bool number = shown_.is_rating() || !shown_.choices.empty();
+    console_.Print(
+        text + (number ? "  Type a number and press Enter:" : "  Type one line and press Enter:"));
   }
 
   Console& console_;

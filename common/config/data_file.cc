@@ -7,6 +7,7 @@
 
 #include "common/config/regular_file.h"
 #include "common/text/joined.h"
+#include "common/text/number.h"
 
 namespace footing::config {
 namespace {
@@ -40,6 +41,16 @@ std::string BuiltInNames(const std::string& folder, const std::string& data_fold
   return text::Joined(names);
 }
 
+Error TooLarge(const std::string& path, std::size_t bytes, std::size_t max_bytes) {
+  constexpr double kBytesPerMb = 1e6;
+  const double mb = static_cast<double>(bytes) / kBytesPerMb;
+  const double max_mb = static_cast<double>(max_bytes) / kBytesPerMb;
+  const int decimals = mb - max_mb < 0.1 ? 6 : 1;  // A file just above the limit, to the byte.
+  return InvalidData(path + " is too large: it has " + text::Fixed(mb, decimals) +
+                     " MB, and at most " + text::Fixed(max_mb, decimals) +
+                     " MB are read; check that this is the right file, or shorten or split it");
+}
+
 }  // namespace
 
 Result<std::string> FindDataFile(const std::string& name, const std::string& folder) {
@@ -56,10 +67,7 @@ Result<std::string> FindDataFile(const std::string& name, const std::string& fol
 Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes) {
   const auto file = RegularFile::Open(path);
   if (!file) return Failure("cannot open " + path + ": " + file.error().message);
-  if (file->size() > max_bytes) {
-    return InvalidData(path + " has " + std::to_string(file->size()) + " bytes, more than the " +
-                       std::to_string(max_bytes) + " it may have");
-  }
+  if (file->size() > max_bytes) return TooLarge(path, file->size(), max_bytes);
   auto text = file->Read(max_bytes);
   if (!text) return Failure("cannot read " + path + ": " + text.error().message);
   return text;

@@ -16,6 +16,7 @@ void Fields(Way way, const stream::StudyState&) {
   FOOTING_FIELD(left_s);
   FOOTING_FIELD(active_s);
   FOOTING_FIELD(attempt);
+  FOOTING_ENUM(StudyActivity, activity);
 }
 FOOTING_BOTH_WAYS(StudyState)
 

@@ -49,6 +49,38 @@ Result<DeviceStatus> FindDevice(const std::vector<DeviceStatus>& devices, const 
   return NoDevice("more than one device is " + name + "; " + WhatThereIs(found));
 }
 
+Boards BoardsOf(const std::vector<DeviceStatus>& devices) {
+  Boards boards;
+  for (const DeviceStatus& device : devices) {
+    if (device.kind != stream::DeviceKind::kBalanceBoard) continue;
+    if (device.state != stream::DeviceState::kLost) {
+      boards.there.push_back(device);
+      continue;
+    }
+    const bool needed =
+        device.role != stream::DeviceRole::kUnspecified &&
+        std::none_of(devices.begin(), devices.end(), [&](const DeviceStatus& other) {
+          return other.state != stream::DeviceState::kLost && other.rig == device.rig &&
+                 other.role == device.role;
+        });
+    if (needed) boards.lost.push_back(device);
+  }
+  return boards;
+}
+
+std::vector<DeviceStatus> Reassigned(const std::vector<DeviceStatus>& before,
+                                     const std::vector<DeviceStatus>& now) {
+  std::vector<DeviceStatus> changed;
+  for (const DeviceStatus& device : now) {
+    const bool known = std::any_of(before.begin(), before.end(), [&](const DeviceStatus& other) {
+      return other.device == device.device && other.serial == device.serial &&
+             (other.rig != device.rig || other.role != device.role);
+    });
+    if (known) changed.push_back(device);
+  }
+  return changed;
+}
+
 Result<std::pair<std::string, stream::DeviceRole>> ParseRigRole(const std::string& text) {
   const std::size_t slash = text.rfind('/');  // A rig's name may have one.
   const std::string rig = slash == std::string::npos ? "" : text.substr(0, slash);

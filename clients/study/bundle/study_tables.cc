@@ -140,11 +140,11 @@ DocumentedTable TrialsTable(const std::vector<Records>& people, const Participan
       {"attempt", Column("Attempt at this trial, from 1")},
       {"outcome", Column("finished, timed_out, stopped, device_lost, broken_off, interrupted")},
       {"counts", Column("yes: the last attempt that ended, the one to analyse")},
-      {"time", Column("From the start line, including put-backs", "s")},
-      {"distance", Column("Along the track", "m")},
-      {"time_to_first_failure", Column("From the start line", "s")},
-      {"heading_oscillation", Column("Standard deviation of the heading error", "rad")},
-      {"anticipation", Column("Command before the character reached the line of the task", "s")},
+      {"time_s", Column("From the start line, including put-backs", "s")},
+      {"distance_m", Column("Along the track", "m")},
+      {"time_to_first_failure_s", Column("From the start line", "s")},
+      {"heading_oscillation_rad", Column("Standard deviation of the heading error", "rad")},
+      {"anticipation_s", Column("Command before the character reached the line of the task", "s")},
       {"file", Column("Stem of the motion files")}};
   for (const stream::FailureCause cause : stream::kFailureCauses) {
     const std::string name = stream::Name(cause);

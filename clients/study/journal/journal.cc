@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "clients/study/journal/study_folder.h"
 #include "common/clock/clock.h"
 #include "common/config/data_file.h"
 
@@ -47,6 +48,21 @@ Result<void> RequireParticipant(const std::vector<records::Event>& events,
     if (own == participant) return {};
     return InvalidData(path + " is the journal of participant " + own + ", not of " + participant +
                        "; move it to the folder of that code");
+  }
+  return {};
+}
+
+Result<void> RequireNoPerson(const std::string& study_folder) {
+  for (const std::string& participant : Participants(study_folder)) {
+    const std::string path = JournalPath(study_folder, participant);
+    const auto text = ReadJournal(path);
+    if (!text) return text.error();
+    for (const records::Event& event : text->events) {
+      const bool session = event.kind == records::EventKind::kSessionStarted ||
+                           event.kind == records::EventKind::kSessionResumed;
+      if (!session || event.Flag("synthetic")) continue;
+      return UsageError(path + " is of a person; name a --folder for simulated sessions");
+    }
   }
   return {};
 }

@@ -50,6 +50,10 @@ class Journal {
 Result<void> RequireParticipant(const std::vector<records::Event>& events,
                                 const std::string& participant, const std::string& path);
 
+/// Usage error when a journal in the study's folder is of a person, who may have taken part in any
+/// session of it: random answers and simulated devices must not get among real ones.
+Result<void> RequireNoPerson(const std::string& study_folder);
+
 /// The events of a journal, without changing the file. Failure when it cannot be read.
 Result<records::JournalText> ReadJournal(const std::string& path);
 

@@ -49,6 +49,7 @@ Result<void> ReadSurvey(Reader& outer, const std::string& file, Survey& survey) 
   const ordered_json* object = outer.Object("survey");
   if (object == nullptr) return {};
   Reader reader(*object, file + ": survey");
+  survey = {.ratings = {}, .questions = {}, .exertion = false};
   ReadItems(reader, survey);
   return reader.Finish();
 }
@@ -57,6 +58,8 @@ Result<void> ReadFinalSurvey(Reader& outer, const std::string& file, FinalSurvey
   const ordered_json* object = outer.Object("final_survey");
   if (object == nullptr) return {};
   Reader reader(*object, file + ": final_survey");
+  survey.items = {.ratings = {}, .questions = {}, .exertion = false};
+  survey.overall.clear();
   ReadItems(reader, survey.items);
   reader.Flag("each_interface", survey.each_interface);
   reader.Texts("overall", survey.overall, 0, kMostItems);

@@ -21,6 +21,12 @@ inline constexpr const char* kExertionItem = "exertion";
 inline constexpr int kLeastRating = 1, kMostRating = 5;  ///< Gait paper, section 8.1.
 inline constexpr int kMostExertion = 10;                 ///< From 0: Borg's CR10 scale.
 
+/// A question of final_survey.overall that is not answered by free text: a choice among the
+/// session's interfaces.
+inline constexpr const char* kPreferredItem = "preferred interface";
+
+/// A survey of the protocol's file takes the place of all of this: what it does not list is not
+/// asked.
 struct Survey {
   /// Each is rated 1 to 5 (gait paper, section 8.1).
   std::vector<std::string> ratings = {"fun",         "ease of use", "stress",
@@ -35,7 +41,8 @@ struct FinalSurvey {
   /// also completed a survey which required them to rank each interface").
   Survey items = {.exertion = false};
   bool each_interface = true;  ///< Otherwise `items` are asked once, about the whole study.
-  std::vector<std::string> overall = {"preferred interface", "remarks"};  ///< Free text, once.
+  /// Once; free text, but for kPreferredItem.
+  std::vector<std::string> overall = {kPreferredItem, "remarks"};
 };
 
 /// How participants are spared.

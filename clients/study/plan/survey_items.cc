@@ -30,6 +30,10 @@ std::vector<SurveyItem> ItemsAtEnd(const Protocol& protocol,
   std::vector<SurveyItem> items =
       ItemsOf(survey.items, survey.each_interface ? interfaces : whole_study, /*at_end=*/true);
   for (const std::string& question : survey.overall) {
+    if (question == kPreferredItem) {
+      items.push_back({"", question, SurveyScale::kChoice, true, interfaces});
+      continue;
+    }
     items.push_back({"", question, SurveyScale::kText, true});
   }
   return items;

@@ -11,6 +11,7 @@ enum class SurveyScale {
   kRating,    ///< 1 to 5.
   kExertion,  ///< 0 to 10.
   kText,      ///< One line.
+  kChoice,    ///< One of `choices`.
 };
 
 /// One question of a survey.
@@ -19,6 +20,7 @@ struct SurveyItem {
   std::string item;       ///< What is rated, or the question; "exertion" for the exertion.
   SurveyScale scale = SurveyScale::kRating;
   bool at_end = false;  ///< Asked after the last interface.
+  std::vector<std::string> choices = {};
 
   bool operator==(const SurveyItem&) const = default;
 };

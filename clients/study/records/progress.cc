@@ -81,11 +81,13 @@ std::vector<plan::SurveyItem> Unanswered(const std::vector<plan::SurveyItem>& it
   for (const Event& event : events) {
     const auto scale = ScaleOf(event.kind);
     if (!scale) continue;
-    const bool text = *scale == plan::SurveyScale::kText;
-    const plan::SurveyItem answered = {event.Text("interface"),
-                                       event.Text(text ? "question" : "item"), *scale,
-                                       event.Flag("at_end")};
-    std::erase(left, answered);
+    const std::string asked = event.Text(*scale == plan::SurveyScale::kText ? "question" : "item");
+    std::erase_if(left, [&](const plan::SurveyItem& item) {
+      // The journal has a choice as an answer in text.
+      const bool choice = item.scale == plan::SurveyScale::kChoice;
+      return (choice ? plan::SurveyScale::kText : item.scale) == *scale && item.item == asked &&
+             item.interface == event.Text("interface") && item.at_end == event.Flag("at_end");
+    });
   }
   return left;
 }

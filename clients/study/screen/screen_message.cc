@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/text/lines.h"
 #include "common/text/number.h"
 
 namespace footing::study::screen {
@@ -14,10 +15,10 @@ constexpr auto kReplace = ordered_json::error_handler_t::replace;
 }  // namespace
 
 std::string ToText(const Shown& shown) {
-  return ordered_json{{"number", shown.number},     {"title", shown.title},
-                      {"item", shown.item},         {"scale", shown.scale},
-                      {"least", shown.least},       {"greatest", shown.greatest},
-                      {"position", shown.position}, {"count", shown.count}}
+  return ordered_json{
+      {"number", shown.number},     {"title", shown.title}, {"item", shown.item},
+      {"scale", shown.scale},       {"least", shown.least}, {"greatest", shown.greatest},
+      {"position", shown.position}, {"count", shown.count}, {"choices", shown.choices}}
       .dump(-1, ' ', false, kReplace);
 }
 
@@ -29,8 +30,15 @@ std::string ToText(const Reply& reply) {
 Result<Shown> ParseShown(std::string_view text) {
   try {
     const ordered_json json = ordered_json::parse(text);
-    return Shown{json.at("number"), json.at("title"),    json.at("item"),     json.at("scale"),
-                 json.at("least"),  json.at("greatest"), json.at("position"), json.at("count")};
+    return Shown{.number = json.at("number"),
+                 .title = json.at("title"),
+                 .item = json.at("item"),
+                 .scale = json.at("scale"),
+                 .least = json.at("least"),
+                 .greatest = json.at("greatest"),
+                 .position = json.at("position"),
+                 .count = json.at("count"),
+                 .choices = json.value("choices", std::vector<std::string>())};
   } catch (const ordered_json::exception& error) {
     return InvalidData(std::string("not a question: ") + error.what());
   }
@@ -55,7 +63,27 @@ std::optional<int> ParseRating(const std::string& text, int least, int greatest)
   return rating < least ? std::nullopt : std::optional(rating);
 }
 
+std::optional<std::string> ParseChoice(const std::string& text,
+                                       const std::vector<std::string>& choices) {
+  const std::string_view word = text::Trim(text);
+  for (const std::string& choice : choices) {
+    if (text::EqualsIgnoringCase(word, choice)) return choice;
+  }
+  const auto number = text::ToCount(word);
+  if (!number || *number < 1 || *number > choices.size()) return std::nullopt;
+  return choices[*number - 1];
+}
+
+std::string ChoiceLine(const std::vector<std::string>& choices) {
+  std::string line;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    line += (i == 0 ? "" : "   ") + std::to_string(i + 1) + " " + choices[i];
+  }
+  return line;
+}
+
 bool Answers(const Shown& shown, const std::string& text) {
+  if (!shown.choices.empty()) return ParseChoice(text, shown.choices).has_value();
   return !shown.is_rating() || ParseRating(text, shown.least, shown.greatest).has_value();
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/result/result.h"
 
@@ -17,8 +18,9 @@ struct Shown {
   std::string title = {};    ///< What it is about.
   std::string item = {};     ///< What is rated or asked.
   std::string scale = {};    ///< What the ends of a rating mean.
-  int least = 0, greatest = 0;  ///< Of a rating; both 0: free text, one line.
-  int position = 0, count = 0;  ///< Of the survey's items, from 1.
+  int least = 0, greatest = 0;            ///< Of a rating; both 0: free text, one line.
+  int position = 0, count = 0;            ///< Of the survey's items, from 1.
+  std::vector<std::string> choices = {};  ///< One of them is the answer; empty: any is.
 
   bool is_rating() const { return least < greatest; }
   bool operator==(const Shown&) const = default;
@@ -45,7 +47,13 @@ Result<Reply> ParseReply(std::string_view text);
 /// A whole number within the range that is the whole of `text`, or nothing.
 std::optional<int> ParseRating(const std::string& text, int least, int greatest);
 
-/// Whether the text answers the question: a rating within its range, or any text.
+/// The choice that is the whole of `text`, by its name in any case or by its number from 1.
+std::optional<std::string> ParseChoice(const std::string& text,
+                                       const std::vector<std::string>& choices);
+/// "1 wrist   2 arm", as they are shown.
+std::string ChoiceLine(const std::vector<std::string>& choices);
+
+/// Whether the text answers the question: a rating within its range, a choice, or any text.
 bool Answers(const Shown& shown, const std::string& text);
 
 }  // namespace footing::study::screen

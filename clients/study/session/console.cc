@@ -109,6 +109,7 @@ class Console::Implementation {
   asio::posix::stream_descriptor input_;
   std::array<char, 256> buffer_{};
   std::string typed_;
+  std::string prompt_;  ///< Last line of what is asked now; empty: nothing is.
   termios before_{};
   bool terminal_ = false;
   bool keys_ = false;
@@ -122,7 +123,15 @@ Console::~Console() { timer::DropWaits(); }
 
 boost::asio::io_context& Console::io() { return implementation_->io_; }
 
-void Console::Print(const std::string& line) { std::cerr << line << std::endl; }
+void Console::Print(const std::string& line) {
+  const std::string& prompt = implementation_->prompt_;
+  if (prompt.empty()) {
+    std::cerr << line << std::endl;
+    return;
+  }
+  // The cursor is behind the prompt, which would otherwise be gone from the sight of the person.
+  std::cerr << "\n" << line << "\n" << prompt << " " << std::flush;
+}
 
 Result<std::string> Console::Ask(const std::string& prompt) {
   Implementation& own = *implementation_;
@@ -130,7 +139,9 @@ Result<std::string> Console::Ask(const std::string& prompt) {
   own.Open();
   own.DropTypedAhead();
   std::cerr << prompt << " " << std::flush;
+  own.prompt_ = prompt.substr(prompt.rfind('\n') + 1);
   own.RunUntil([&own] { return own.HasLine() || own.ended_; }, kAskS);
+  own.prompt_.clear();
   if (own.interrupted_) return Interrupted();
   if (own.HasLine() || !own.typed_.empty()) return own.TakeLine();
   return Failure(

@@ -25,6 +25,7 @@ class Console {
 
   boost::asio::io_context& io();
 
+  /// While an answer is awaited, the last line of its prompt follows again.
   void Print(const std::string& line);
   /// The next line that is typed; on a terminal, from the prompt on. Failure when the program is
   /// interrupted or the input has ended.

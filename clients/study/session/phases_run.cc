@@ -11,6 +11,7 @@
 #include "clients/study/session/undo.h"
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/text/joined.h"
 #include "common/text/lines.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
@@ -20,8 +21,12 @@ namespace {
 
 using nlohmann::ordered_json;
 using records::EventKind;
+using stream::StudyActivity;
 
+constexpr const char* kFinished = "finished";  // The outcome of a trial at its finish line.
+constexpr double kCountInS = 3;                // The participant's screen counts 3, 2, 1.
 constexpr double kDevicesReadyS = 10;  // A rate is known a few seconds after a device attached.
+constexpr double kSaidAfterS = 0.5;    // The lease and the first status take less.
 
 }  // namespace
 
@@ -80,21 +85,27 @@ Result<void> SessionRun::CheckDevices(const std::string& interface) {
     if (const auto why = (*servers)->WhyNoDevices(); !why.empty()) all.push_back(why);
     return all;
   };
-  for (;;) {
-    (*servers)->KeepDevices();
-    const Waited waited =
-        context_.console.RunUntil([&] { return problems().empty(); }, kDevicesReadyS);
-    if (waited == Waited::kInterrupted) return Interrupted();
-    if (waited == Waited::kDone) return Warn(gate::Warnings(played, (*servers)->devices()));
+  const auto ready = [&] { return problems().empty(); };
+  const auto say = [&](const std::string& what, const std::string& keys) {
     const std::vector<std::string> now = problems();
-    std::string text;
-    for (const std::string& problem : now) text += (text.empty() ? "" : "; ") + problem;
-    if (context_.options.unattended) return NoDevice("the devices are not ready: " + text);
-    context_.console.Print("The devices are not ready: " + text);
+    context_.console.Print(what + ": " + text::Joined(now, "; "));
     const std::string more =
         now.size() > 1 ? "; and " + std::to_string(now.size() - 1) + " more, see the terminal" : "";
-    Show("The devices are not ready: " + (now.empty() ? "" : now.front()) + more,
-         "Enter checks again");
+    Show(StudyActivity::kWait, what + ": " + (now.empty() ? "" : now.front()) + more, keys);
+  };
+  for (;;) {
+    (*servers)->KeepDevices();
+    Waited waited = context_.console.RunUntil(ready, kSaidAfterS);
+    if (waited == Waited::kTimeUp) {
+      say("Waiting for the devices", "");
+      waited = context_.console.RunUntil(ready, kDevicesReadyS - kSaidAfterS);
+    }
+    if (waited == Waited::kInterrupted) return Interrupted();
+    if (waited == Waited::kDone) return Warn(gate::Warnings(played, (*servers)->devices()));
+    if (context_.options.unattended) {
+      return NoDevice("the devices are not ready: " + text::Joined(problems(), "; "));
+    }
+    say("The devices are not ready", "Enter checks again");
     (*servers)->LendDevices();  // The remedy may be a command to footingd.
     const auto again = context_.console.Ask("Press Enter to check again:");
     if (!again) return again.error();
@@ -116,7 +127,8 @@ Result<void> SessionRun::Demonstrate(const plan::Phase& phase) {
   if (!servers) return servers.error();
   const auto placed = PlaceOnTrack(**servers, context_.session.participant + "." + phase.id, phase);
   if (!placed || context_.options.unattended) return placed;
-  Show("Show all commands of " + phase.interface + ".", "Enter: done");
+  Show(StudyActivity::kDemonstration, "Show all commands of " + phase.interface + ".",
+       "Enter: done");
   const auto done = context_.console.Ask("Interface " + phase.interface +
                                          ": show all commands. Press Enter when done:");
   return done ? Result<void>() : done.error();
@@ -127,15 +139,17 @@ Result<void> SessionRun::Practise(const plan::Phase& phase) {
   if (!servers) return servers.error();
   const auto placed = PlaceOnTrack(**servers, context_.session.participant + "." + phase.id, phase);
   if (!placed) return placed;
-  return CountDown("Practice of " + phase.interface, phase.duration_s, /*may_end_early=*/true);
+  return CountDown(StudyActivity::kPractice, "Practice of " + phase.interface, phase.duration_s,
+                   /*may_end_early=*/true);
 }
 
 Result<void> SessionRun::Trial(const plan::Phase& phase) {
   const bool attended = !context_.options.unattended;
   if (const auto before = progress_.outcomes.find(phase.id); before != progress_.outcomes.end()) {
     context_.console.Print(phase.id + " has ended before: " + before->second);
+    shown_.attempt = static_cast<std::uint32_t>(progress_.attempts[phase.id]);
     if (!attended) return {};
-    const auto repeat = AskToRepeat(phase);
+    const auto repeat = AskToRepeat(phase, before->second);
     if (!repeat) return repeat.error();
     if (!*repeat) return {};
   }
@@ -152,7 +166,7 @@ Result<void> SessionRun::Trial(const plan::Phase& phase) {
       continue;
     }
     if (!attended) return {};
-    const auto repeat = AskToRepeat(phase);
+    const auto repeat = AskToRepeat(phase, *outcome);
     if (!repeat) return repeat.error();
     if (!*repeat) return {};
   }
@@ -163,24 +177,30 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
       context_.options.study_folder,
       context_.protocol.disk_mb / static_cast<double>(context_.session.trial_count()));
   if (!space) return space.error();
-  if (!context_.options.unattended) {
+  const std::size_t attempt = progress_.attempts[phase.id] + 1;
+  shown_.attempt = static_cast<std::uint32_t>(attempt);
+  const bool attended = !context_.options.unattended;
+  if (attended) {
     const std::string where =
         "track " + phase.track + (phase.task.empty() ? "" : ", task " + phase.task) + ".";
-    Show("Next: " + where, "Enter begins the trial");
+    Show(StudyActivity::kGetReady, "Next: " + where, "Enter begins the trial");
     const auto ready =
         context_.console.Ask("Next: " + phase.id + ", " + where + " Press Enter to begin:");
     if (!ready) return ready.error();
   }
   const auto servers = UseInterface(phase.interface);
   if (!servers) return servers.error();
-  const std::size_t attempt = ++progress_.attempts[phase.id];
-  shown_.attempt = static_cast<std::uint32_t>(attempt);
-  Show("The trial is running.", "s stops it, u undoes the latest failure");
+  progress_.attempts[phase.id] = attempt;
+  Show(StudyActivity::kGetReady, "The trial begins.", "");
   events_.reset();
   events_ = std::make_unique<TrialEvents>(
       context_, **servers,
       context_.session.participant + "." + phase.id + "." + std::to_string(attempt));
-  const auto outcome = RunTrial(context_, **servers, active_, *events_, phase, attempt);
+  const auto outcome =
+      RunTrial(context_, **servers, active_, *events_, phase, attempt, [this, attended] {
+        Show(StudyActivity::kTrial, "The trial is running.",
+             "s stops it, u undoes the latest failure", attended ? kCountInS : 0);
+      });
   if (!outcome) return outcome.error();
   const stream::TrialProgress& trial = (*servers)->frame().trial.progress;
   context_.console.Print(phase.id + ": " + *outcome + ", " + text::Fixed(trial.time_s, 1) +
@@ -188,8 +208,9 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   return outcome;
 }
 
-Result<bool> SessionRun::AskToRepeat(const plan::Phase& phase) {
-  Show("The trial is over.", "Enter continues, r repeats it, u NUMBER undoes a failure");
+Result<bool> SessionRun::AskToRepeat(const plan::Phase& phase, const std::string& outcome) {
+  Show(outcome == kFinished ? StudyActivity::kFinished : StudyActivity::kStopped,
+       "The trial is over.", "Enter continues, r repeats it, u NUMBER undoes a failure");
   for (;;) {
     const auto next = context_.console.Ask(
         "Press Enter to continue, type r to repeat the trial, or u NUMBER to undo a failure:");

@@ -69,7 +69,8 @@ Result<void> SessionRun::MeasureRanges(const plan::Phase& phase) {
   if (!built_in) return built_in.error();
   const ranges::Played played{interface, context_.protocol.settings.turn_by};
   for (;;) {
-    Show("Measure the participant's own ranges: read each motion aloud.", "Enter begins");
+    Show(stream::StudyActivity::kRanges,
+         "Measure the participant's own ranges: read each motion aloud.", "Enter begins");
     const auto ready = context_.console.Ask("Next: the participant's own ranges, " +
                                             text::Fixed(ranges::DurationOf(played), 0) +
                                             " s. Read each motion aloud. Press Enter to begin:");

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace footing::study {
 
@@ -13,6 +14,9 @@ struct Respondent {
 
   /// A whole number from `least` to `greatest`, each as likely.
   int Rate(const std::string& interface, const std::string& item, int least, int greatest) const;
+  /// One of them, each as likely. `choices` must not be empty.
+  std::string Choose(const std::string& interface, const std::string& question,
+                     const std::vector<std::string>& choices) const;
   std::string Answer(const std::string& interface, const std::string& question) const;
 };
 

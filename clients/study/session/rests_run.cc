@@ -16,7 +16,8 @@ constexpr double kReminderS = 60;
 
 }  // namespace
 
-Result<void> SessionRun::CountDown(const std::string& what, double duration_s, bool may_end_early) {
+Result<void> SessionRun::CountDown(stream::StudyActivity activity, const std::string& what,
+                                   double duration_s, bool may_end_early) {
   if (context_.options.unattended) return {};
   Console& console = context_.console;
   const std::int64_t begin_ns = clock::MonotonicNs();
@@ -28,7 +29,7 @@ Result<void> SessionRun::CountDown(const std::string& what, double duration_s, b
     return early = may_end_early && key == '\n';
   };
   while (!early && !console.interrupted() && passed_s() < duration_s) {
-    Show(what + ".", may_end_early ? "Enter ends it early" : "", duration_s - passed_s());
+    Show(activity, what + ".", may_end_early ? "Enter ends it early" : "", duration_s - passed_s());
     console.Print(what + ": " + text::Fixed(std::ceil(duration_s - passed_s()), 0) + " s left." +
                   (may_end_early ? " Press Enter to end it early." : ""));
     console.RunUntil(ended, std::min(kReminderS, duration_s - passed_s()));
@@ -59,7 +60,8 @@ Result<void> SessionRun::RestWhereDue(const plan::Phase& next) {
 
 Result<void> SessionRun::Rest(const std::string& what, double duration_s) {
   rests_ = true;
-  const auto done = CountDown(what, duration_s, /*may_end_early=*/false);
+  const auto done =
+      CountDown(stream::StudyActivity::kRest, what, duration_s, /*may_end_early=*/false);
   rests_ = false;
   if (!done || duration_s < context_.protocol.rests.after_limit_s) return done;
   progress_.rested_at_s = ActiveS();

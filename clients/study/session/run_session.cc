@@ -49,6 +49,9 @@ Result<journal::Lock> LockStudy(const SessionOptions& options) {
   const std::string& folder = options.study_folder;
   auto lock = journal::Lock::Take(folder + "/lock", "the study", Holder(options));
   if (!lock) return lock;
+  if (options.unattended) {
+    if (const auto done = journal::RequireNoPerson(folder); !done) return done.error();
+  }
   if (const auto done = journal::KeepProtocol(folder, options.protocol_text); !done) {
     return done.error();
   }
@@ -118,6 +121,30 @@ const char* PhaseText(plan::PhaseKind kind) {
   return "";
 }
 
+/// What the participant sees at the beginning of a phase.
+stream::StudyActivity ActivityOf(plan::PhaseKind kind) {
+  switch (kind) {
+    case plan::PhaseKind::kConsent:
+    case plan::PhaseKind::kDeviceCheck:
+      return stream::StudyActivity::kWait;
+    case plan::PhaseKind::kRest:
+      return stream::StudyActivity::kRest;
+    case plan::PhaseKind::kDemonstration:
+      return stream::StudyActivity::kDemonstration;
+    case plan::PhaseKind::kRanges:
+      return stream::StudyActivity::kRanges;
+    case plan::PhaseKind::kPractice:
+      return stream::StudyActivity::kPractice;
+    case plan::PhaseKind::kStraight:
+    case plan::PhaseKind::kTestTrack:
+      return stream::StudyActivity::kGetReady;
+    case plan::PhaseKind::kSurvey:
+    case plan::PhaseKind::kFinalSurvey:
+      return stream::StudyActivity::kSurvey;
+  }
+  return stream::StudyActivity::kUnspecified;
+}
+
 }  // namespace
 
 SessionRun::SessionRun(SessionContext context)
@@ -164,7 +191,7 @@ Result<void> SessionRun::Run() {
     console.Print("[" + std::to_string(i + 1) + "/" + std::to_string(phases.size()) + "] " +
                   phases[i].id +
                   ", active so far: " + text::Fixed(ActiveS() / kSecondsPerMinute, 1) + " min");
-    Show(PhaseText(phases[i].kind), "");
+    Show(ActivityOf(phases[i].kind), PhaseText(phases[i].kind), "");
     const double active_before_s = active_.seconds();
     if (const auto done = RunPhase(phases[i]); !done) return done;
     if (console.interrupted()) return Interrupted();
@@ -176,10 +203,12 @@ Result<void> SessionRun::Run() {
   return context_.journal.Append(EventKind::kSessionFinished, ordered_json::object());
 }
 
-void SessionRun::Show(const std::string& doing, const std::string& keys, double left_s) {
+void SessionRun::Show(stream::StudyActivity activity, const std::string& doing,
+                      const std::string& keys, double left_s) {
   const std::string warning = RestWarning();
   if (!warning.empty() && warned_.insert(kRestWarning).second) context_.console.Print(warning);
   shown_.doing = doing + (warning.empty() ? "" : " " + warning);
+  shown_.activity = activity;
   shown_.keys = keys;
   shown_.left_s = left_s;
   shown_.active_s = ActiveS();

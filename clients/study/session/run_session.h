@@ -28,7 +28,8 @@ class SessionRun {
   Result<void> Demonstrate(const plan::Phase& phase);
   Result<void> Practise(const plan::Phase& phase);
   /// Until the time is up or, where that is allowed, Enter is pressed, which the journal notes.
-  Result<void> CountDown(const std::string& what, double duration_s, bool may_end_early);
+  Result<void> CountDown(stream::StudyActivity activity, const std::string& what, double duration_s,
+                         bool may_end_early);
   Result<void> Rest(const std::string& what, double duration_s);
   /// Before a phase in which the participant moves, once they have moved for long enough.
   Result<void> RestWhereDue(const plan::Phase& next);
@@ -41,7 +42,7 @@ class SessionRun {
   Result<void> Trial(const plan::Phase& phase);
   Result<std::string> Attempt(const plan::Phase& phase);
   /// After an attended attempt: undoes failures as asked; true when the trial is to be repeated.
-  Result<bool> AskToRepeat(const plan::Phase& phase);
+  Result<bool> AskToRepeat(const plan::Phase& phase, const std::string& outcome);
   /// Of the attempt of a phase that counts.
   Result<void> Undo(const plan::Phase& phase, std::uint64_t failure);
   /// The participant's own ranges, until they are measured or the experimenter goes on without.
@@ -55,8 +56,10 @@ class SessionRun {
                          const std::string& table, const std::string& reason);
   /// Waits until the devices of an interface are as the protocol asks.
   Result<void> CheckDevices(const std::string& interface);
-  /// Shows on every experimenter's screen what goes on in the phase, and what may be pressed.
-  void Show(const std::string& doing, const std::string& keys, double left_s = 0);
+  /// Shows on every experimenter's screen what goes on in the phase, and what may be pressed; on
+  /// the participant's, what `activity` means to them.
+  void Show(stream::StudyActivity activity, const std::string& doing, const std::string& keys,
+            double left_s = 0);
   /// Prints and notes each warning once a session.
   Result<void> Warn(const std::vector<std::string>& warnings);
   /// Connects to both servers where that is due.

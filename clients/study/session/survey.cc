@@ -37,6 +37,7 @@ Scale ScaleOf(plan::SurveyScale scale) {
     case plan::SurveyScale::kExertion:
       return {EventKind::kExertion, 0, plan::kMostExertion, kExertionScale};
     case plan::SurveyScale::kText:
+    case plan::SurveyScale::kChoice:
       return {};
   }
   return {};
@@ -61,7 +62,9 @@ class SurveyRun {
     if (context_.options.unattended) {
       // A look back is answered independently of what was said right after the interface.
       const std::string about = (item.at_end ? "end " : "") + item.interface;
-      if (text) {
+      if (!item.choices.empty()) {
+        fields["text"] = respondent_.Choose(about, item.item, item.choices);
+      } else if (text) {
         fields["text"] = respondent_.Answer(about, item.item);
       } else {
         fields["value"] = respondent_.Rate(about, item.item, scale.least, scale.greatest);
@@ -69,7 +72,9 @@ class SurveyRun {
     } else {
       auto asked = Ask(item, Question(item, scale));
       if (!asked) return asked.error();
-      if (text) {
+      if (!item.choices.empty()) {
+        fields["text"] = *screen::ParseChoice(*asked, item.choices);
+      } else if (text) {
         fields["text"] = std::move(*asked);
       } else {
         fields["value"] = *screen::ParseRating(*asked, scale.least, scale.greatest);
@@ -90,7 +95,8 @@ class SurveyRun {
             .least = scale.least,
             .greatest = scale.greatest,
             .position = static_cast<int>(place - items_.begin()) + 1,
-            .count = static_cast<int>(items_.size())};
+            .count = static_cast<int>(items_.size()),
+            .choices = item.choices};
   }
 
   Result<std::string> Ask(const SurveyItem& item, const Shown& question) {
@@ -135,14 +141,17 @@ class SurveyRun {
     const std::string range =
         std::to_string(question.least) + " to " + std::to_string(question.greatest);
     const bool exertion = question.greatest == plan::kMostExertion;
+    const bool choice = !question.choices.empty();
     const std::string prompt =
-        question.is_rating()
+        choice ? question.item + " (" + screen::ChoiceLine(question.choices) + "):"
+        : question.is_rating()
             ? question.item + (exertion ? " (" + question.scale + ")" : "") + ", " + range + ":"
             : question.item + " (one line):";
     for (;;) {
       auto text = context_.console.Ask("  " + about + prompt);
       if (!text || screen::Answers(question, *text)) return text;
-      context_.console.Print("  Type a whole number from " + range + ".");
+      context_.console.Print(choice ? "  Type one of them: the number or the name."
+                                    : "  Type a whole number from " + range + ".");
     }
   }
 

@@ -47,7 +47,7 @@ mcap::TextMap ToTextMap(const ordered_json& fields) {
 class TrialRun {
  public:
   TrialRun(SessionContext& context, Servers& servers, const ActiveTime& active, TrialEvents& events,
-           const plan::Phase& phase, std::size_t attempt)
+           const plan::Phase& phase, std::size_t attempt, std::function<void()> on_placed)
       : context_(context),
         servers_(servers),
         active_(active),
@@ -57,7 +57,8 @@ class TrialRun {
         attempt_(attempt),
         id_(events.trial()),
         file_(phase.id + "." + std::to_string(attempt) + ".mcap"),
-        events_(events) {}
+        events_(events),
+        on_placed_(std::move(on_placed)) {}
   ~TrialRun() { context_.console.ReadKeys(false); }
   TrialRun(const TrialRun&) = delete;
   TrialRun& operator=(const TrialRun&) = delete;
@@ -141,6 +142,7 @@ class TrialRun {
     events_.Begin();
     begin_ns_ = complete_ns_ = clock::MonotonicNs();
     if (const auto done = servers_.Call(StartCommand(id_, phase_)); !done) return done;
+    on_placed_();
     if (!context_.options.unattended) {
       context_.console.ReadKeys(true);
       context_.console.Print(id_ + " on track " + phase_.track +
@@ -265,13 +267,15 @@ class TrialRun {
   std::int64_t complete_ns_ = 0;  ///< When all devices were last there.
   std::uint32_t lost_roles_ = 0;
   TrialEvents& events_;
+  std::function<void()> on_placed_;
 };
 
 }  // namespace
 
 Result<std::string> RunTrial(SessionContext& context, Servers& servers, const ActiveTime& active,
-                             TrialEvents& events, const plan::Phase& phase, std::size_t attempt) {
-  return TrialRun(context, servers, active, events, phase, attempt).Run();
+                             TrialEvents& events, const plan::Phase& phase, std::size_t attempt,
+                             std::function<void()> on_placed) {
+  return TrialRun(context, servers, active, events, phase, attempt, std::move(on_placed)).Run();
 }
 
 Result<void> PlaceOnTrack(Servers& servers, const std::string& id, const plan::Phase& phase) {

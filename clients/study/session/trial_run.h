@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 #include "clients/study/plan/phases.h"
@@ -14,9 +15,10 @@ namespace footing::study {
 /// Runs one attempt at a trial: begins the recording and the trial, writes every failure into the
 /// journal, and ends both. Returns the outcome: "finished", "timed_out" or "stopped". Keys during
 /// an attended trial: s stops it, u undoes the latest failure. `events` carries the trial's id and
-/// goes on listening to corrections.
+/// goes on listening to corrections. `on_placed` is called once the character stands at the start.
 Result<std::string> RunTrial(SessionContext& context, Servers& servers, const ActiveTime& active,
-                             TrialEvents& events, const plan::Phase& phase, std::size_t attempt);
+                             TrialEvents& events, const plan::Phase& phase, std::size_t attempt,
+                             std::function<void()> on_placed);
 
 /// Puts the character at the start of a track, for demonstration and practice.
 Result<void> PlaceOnTrack(Servers& servers, const std::string& id, const plan::Phase& phase);

@@ -34,8 +34,10 @@ Result<std::optional<SessionTime>> Before(const StudyOptions& options,
   if (!journal::Exists(path)) return std::optional<SessionTime>();
   const auto text = journal::ReadJournal(path);
   if (!text) return text.error();
-  if (text->events.empty() || !text->events.front().Flag("synthetic")) {
-    return UsageError(path + " is of a person; name a --folder for simulated sessions");
+  if (text->events.empty()) {
+    return UsageError(path + " has no event, so it is not of a simulated session; move " +
+                      journal::ParticipantFolder(options.study_folder, participant) +
+                      " away, or name another --folder");
   }
   const std::int64_t passed_ns = text->events.back().wall_ns - text->events.front().wall_ns;
   return std::optional(SessionTime{participant, NanosecondsToSeconds(passed_ns), true});
@@ -121,6 +123,9 @@ Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options) {
       options.study_folder + "/lock", "the study",
       cli::UserAtHost() + ", footing-study simulate, process " + std::to_string(::getpid()));
   if (!lock) return lock.error();
+  if (const auto done = journal::RequireNoPerson(options.study_folder); !done) {
+    return done.error();
+  }
   const auto kept = journal::KeepProtocol(options.study_folder, options.protocol_text);
   if (!kept) return kept.error();
   std::vector<SessionTime> times;

@@ -18,6 +18,30 @@ void Replace(std::vector<Device>& devices, int source,
   for (const stream::DeviceStatus& status : statuses) devices.push_back({source, status});
 }
 
+/// A device that its server does not list any more, such as after a restart, or that is lost while
+/// another one has its place.
+bool IsGone(std::uint32_t device, const std::vector<stream::DeviceStatus>& statuses) {
+  const auto own =
+      std::find_if(statuses.begin(), statuses.end(),
+                   [device](const stream::DeviceStatus& one) { return one.device == device; });
+  if (own == statuses.end()) return true;
+  if (own->state != stream::DeviceState::kLost) return false;
+  if (own->role == stream::DeviceRole::kUnspecified) return false;
+  return std::any_of(statuses.begin(), statuses.end(), [own](const stream::DeviceStatus& other) {
+    return other.state != stream::DeviceState::kLost && other.rig == own->rig &&
+           other.role == own->role;
+  });
+}
+
+/// Curves of what is gone would stand beside those of what came in its place.
+void DropGone(Model& model, int source, const std::vector<stream::DeviceStatus>& statuses) {
+  const auto gone = [&](const auto& one) {
+    return one.first.first == source && IsGone(one.first.second, statuses);
+  };
+  std::erase_if(model.strips.devices, gone);
+  std::erase_if(model.boards, gone);
+}
+
 void AddBoard(Model& model, int source, std::int64_t received_ns,
               const stream::BoardSample& sample) {
   const std::pair key(source, sample.device);
@@ -87,7 +111,10 @@ void Apply(Model& model, const Update& update) {
     std::int64_t& newest_ns = model.newest_host_ns[update.source];
     newest_ns = std::max(newest_ns, update.host_ns);
   }
-  if (update.devices) Replace(model.devices, update.source, *update.devices);
+  if (update.devices) {
+    Replace(model.devices, update.source, *update.devices);
+    DropGone(model, update.source, *update.devices);
+  }
   if (update.skeletons) {
     model.skeletons = *update.skeletons;
     model.anatomy = model.skeletons.empty() ? Anatomy{} : FindAnatomy(model.skeletons.front());
@@ -121,6 +148,12 @@ void Apply(Model& model, const Update& update) {
     model.replay.Push(*update.frame);
     model.playout.Push(*update.frame, update.received_ns);
   }
+}
+
+bool IsCurrent(const Model& model, const Device& device) {
+  const auto source = static_cast<std::size_t>(device.source);
+  // A recording has no connections.
+  return source >= model.links.size() || model.links[source].state == LinkState::kLive;
 }
 
 bool IsSimulated(const Model& model) {

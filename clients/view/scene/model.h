@@ -94,6 +94,10 @@ struct Model {
   Observed observed;
 };
 
+/// Whether the connection to the server that described a device is live. Where it is not, the
+/// present state of the device is unknown.
+bool IsCurrent(const Model& model, const Device& device);
+
 /// Takes one tick in. Plain data in, plain data out: no clock is read.
 void Apply(Model& model, const Update& update);
 

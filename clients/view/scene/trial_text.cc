@@ -34,6 +34,14 @@ bool ShowsTrial(const stream::TrialState& trial) {
   return !trial.trial.empty() || trial.finish_m > 0;
 }
 
+const stream::TrialState* ShownTrial(const CharacterPose& pose, const stream::StudyState& study) {
+  if (!pose.trial || !ShowsTrial(*pose.trial)) return nullptr;
+  if (study.participant.empty()) return &*pose.trial;
+  std::string own = study.participant + "." + study.phase;
+  if (study.attempt > 0) own += "." + std::to_string(study.attempt);
+  return pose.trial->trial == own ? &*pose.trial : nullptr;
+}
+
 std::string TrialTitle(const stream::TrialState& trial) {
   std::string text = "trial ";
   if (!trial.trial.empty()) text += trial.trial + " ";

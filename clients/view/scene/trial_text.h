@@ -11,6 +11,11 @@ namespace footing::scene {
 /// True for a trial worth showing: somebody named it, or its track has a finish line.
 bool ShowsTrial(const stream::TrialState& trial);
 
+/// The trial of a character that the screens show; null: none. While a study's session is led it is
+/// the trial of its phase and attempt: what went on before goes on behind the next prompt, but does
+/// not belong to it.
+const stream::TrialState* ShownTrial(const CharacterPose& pose, const stream::StudyState& study);
+
 /// "trial p07-2 running 12.3 s"; "trial ready".
 std::string TrialTitle(const stream::TrialState& trial);
 

@@ -38,10 +38,11 @@ const char* StateName(LinkState state) {
   return "";
 }
 
-std::string DeviceLine(const stream::DeviceStatus& device) {
+std::string DeviceLine(const stream::DeviceStatus& device, bool current) {
   std::string line = "  " + Padded(device.rig + "/" + stream::Name(device.role), 20) +
-                     Padded(device.serial, 20) + Padded(stream::Name(device.state), 12) +
-                     Padded(Fixed(device.report_rate_hz, 1) + " Hz", 10);
+                     Padded(device.serial, 20) +
+                     Padded(current ? stream::Name(device.state) : "unknown", 12) +
+                     Padded(current ? Fixed(device.report_rate_hz, 1) + " Hz" : "- Hz", 10);
   line += device.battery_fraction < 0
               ? Padded("battery ?", 14)
               : Padded("battery " + Fixed(100 * device.battery_fraction, 0) + " %", 14);
@@ -96,7 +97,7 @@ std::string BodyText(const CharacterPose& pose) {
   return words;
 }
 
-std::vector<std::string> CharacterLines(const CharacterPose& pose, const stream::Track& track) {
+std::vector<std::string> CharacterLines(const CharacterPose& pose, const Model& model) {
   if (pose.body) return BodyLines(pose);
   const stream::GaitState& gait = pose.gait;
   std::string first = "  " + Padded(GaitTitle(gait.gait), 6) + Padded(PhaseTitle(pose.phase), 18) +
@@ -112,8 +113,9 @@ std::vector<std::string> CharacterLines(const CharacterPose& pose, const stream:
   if (const std::string third = InterfaceText(pose.interface); !third.empty()) {
     lines.push_back("  " + third);
   }
-  if (!pose.trial || !ShowsTrial(*pose.trial)) return lines;
-  for (const std::string& line : TrialLines(*pose.trial, track)) lines.push_back("  " + line);
+  const stream::TrialState* trial = ShownTrial(pose, model.study.state);
+  if (trial == nullptr) return lines;
+  for (const std::string& line : TrialLines(*trial, model.track)) lines.push_back("  " + line);
   return lines;
 }
 
@@ -223,7 +225,7 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
     }
     lines.push_back("Character");
     for (const CharacterPose& pose : model.playout.Newest().characters) {
-      for (std::string& line : CharacterLines(pose, model.track)) lines.push_back(std::move(line));
+      for (std::string& line : CharacterLines(pose, model)) lines.push_back(std::move(line));
     }
   }
   if (ShowsStudy(model.study.state)) {
@@ -237,7 +239,8 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
   }
   AddPreviewLines(model.observed.camera, now_ns, lines);
   if (!model.devices.empty()) lines.push_back("Devices");
-  for (const Device& device : model.devices) lines.push_back(DeviceLine(device.status));
+  for (const Device& device : model.devices)
+    lines.push_back(DeviceLine(device.status, IsCurrent(model, device)));
   const Stance stance = StanceOf(model);
   if (stance.valid) {
     lines.push_back("Boards      " + Fixed(NewtonsToKilograms(stance.total_n), 1) + " kg   left " +
@@ -285,11 +288,10 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
     if (const auto lost = LostSignalOf(pose)) line += "  !! " + lost->what;
     const std::string interface = InterfaceText(pose.interface);
     if (!interface.empty()) line += "  " + interface;
-    if (!pose.trial || !ShowsTrial(*pose.trial)) continue;
-    line += "  " + TrialTitle(*pose.trial);
-    if (const std::string task = TaskText(*pose.trial, model.track); !task.empty()) {
-      line += "  " + task;
-    }
+    const stream::TrialState* trial = ShownTrial(pose, model.study.state);
+    if (trial == nullptr) continue;
+    const std::string task = TaskText(*trial, model.track);
+    line += "  " + TrialTitle(*trial) + (task.empty() ? "" : "  " + task);
   }
   if (ShowsGame(model.game, FirstTrial(model))) line += "  " + GameLine(model.game);
   line +=

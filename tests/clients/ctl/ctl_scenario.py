@@ -152,8 +152,12 @@ def check_assign(console, devices):
                    for side in ("left", "right"))
     now = console.json("assign", left, "main/right_hand")
     assert now["serial"] == left and now["role"] == "right_hand", now
+    # The device that had the role is named, too.
+    assert now["swapped"]["serial"] == right and now["swapped"]["role"] == "left_hand", now
     assert console.roles() == {left: "right_hand", right: "left_hand"}
-    console.json("assign", "main/right_hand", "left_hand")
+    said = console.run("assign", "main/right_hand", "left_hand").stdout
+    assert said == f"{left} is now main/left_hand, {right} is now main/right_hand\n", said
+    assert "swapped" not in console.json("assign", "main/left_hand", "left_hand")
     assert console.roles() == {left: "left_hand", right: "right_hand"}
     console.refused(2, "assign", left, "main/foot", says="left_hand, right_hand")
     console.refused(3, "assign", "00:00:00:00:00:00", "head", says="no device")

@@ -71,5 +71,36 @@ TEST(ParseRigRole, ListsTheRolesForAnythingElse) {
   }
 }
 
+TEST(Boards, AreThoseThatAreThereAndThoseThatAreMissed) {
+  std::vector<stream::DeviceStatus> devices = ThreeDevices();
+  const auto board = [&](std::uint32_t number, stream::DeviceRole role, stream::DeviceState state) {
+    stream::DeviceStatus& one =
+        devices.emplace_back(Device(number, "board" + std::to_string(number), "main", role));
+    one.kind = stream::DeviceKind::kBalanceBoard;
+    one.state = state;
+  };
+  board(4, stream::DeviceRole::kLeftBoard, stream::DeviceState::kLive);
+  board(5, stream::DeviceRole::kRightBoard, stream::DeviceState::kLost);
+  board(6, stream::DeviceRole::kLeftBoard, stream::DeviceState::kLost);  // Board 4 replaces it.
+  board(7, stream::DeviceRole::kUnspecified, stream::DeviceState::kLost);
+  const Boards boards = BoardsOf(devices);
+  ASSERT_EQ(boards.there.size(), 1u);
+  EXPECT_EQ(boards.there[0].device, 4u);
+  ASSERT_EQ(boards.lost.size(), 1u);
+  EXPECT_EQ(boards.lost[0].device, 5u);
+}
+
+TEST(Reassigned, AreBothDevicesOfASwap) {
+  const std::vector<stream::DeviceStatus> before = ThreeDevices();
+  std::vector<stream::DeviceStatus> now = before;
+  EXPECT_TRUE(Reassigned(before, now).empty());
+  std::swap(now[0].role, now[1].role);
+  now.push_back(Device(4, "00:1f:32:aa:bb:ff", "main", stream::DeviceRole::kHead));  // New.
+  const auto changed = Reassigned(before, now);
+  ASSERT_EQ(changed.size(), 2u);
+  EXPECT_EQ(changed[0].device, 1u);
+  EXPECT_EQ(changed[1].device, 2u);
+}
+
 }  // namespace
 }  // namespace footing::ctl::display

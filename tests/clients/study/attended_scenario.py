@@ -17,10 +17,12 @@ from harness import Stage, read_ticks  # noqa: E402
 
 PROTOCOL = {
     "version": 1, "name": "attended", "participants": ["P01", "P02", "P03", "P04"], "interfaces": ["wrist"], "seed": 2,
-    "practice_s": 100, "straight_trials": 0, "test_tracks": ["3"], "survey": {"ratings": ["fun"], "questions": ["good"]},
-    "final_survey": {"ratings": ["like"], "questions": [], "overall": ["remarks"]},
+    "practice_s": 100, "straight_trials": 0, "test_tracks": ["3"],
+    "survey": {"ratings": ["fun"], "questions": ["good"], "exertion": True},
+    "final_survey": {"ratings": ["like"], "overall": ["preferred interface", "remarks"]},
     "devices": {"allow_simulated": True}, "disk_mb": 1, "active_limit_min": 0.05, "active_rest_s": 1,
 }
+PRACTICE, GET_READY, TRIAL, STOPPED, SURVEY = 4, 5, 6, 8, 10  # StudyActivity.
 
 
 class Experimenter:
@@ -79,6 +81,14 @@ def check_other(stage):
     assert done.returncode == 0 and '"withdrawn"' in other.joinpath("journal.jsonl").read_text(), done
 
 
+def check_shown(stage, doing, activity):
+    """What all screens are told once the experimenter's says this; the activity is what the participant's shows."""
+    state = next(tick["study"] for tick in read_ticks(stage.simulation, 30, ("study", "characters"))
+                 if doing in tick.get("study", {}).get("doing", ""))
+    assert state["activity"] == activity, state
+    return state
+
+
 def session(stage, start):
     experimenter = start()
     experimenter.answer("Type yes to confirm", "yes")
@@ -86,9 +96,14 @@ def session(stage, start):
     check_lock(stage)
     check_other(stage)
     experimenter.type("\n")
-    experimenter.answer("Practice of wrist: 100 s left", "")
-    experimenter.answer("Press Enter to begin", "")
+    experimenter.read("Practice of wrist: 100 s left")
+    assert check_shown(stage, "Practice of wrist", PRACTICE)["left_s"] > 90
+    experimenter.type("\n")
+    experimenter.read("Press Enter to begin")
+    assert check_shown(stage, "Next: track 3", GET_READY)["attempt"] == 1
+    experimenter.type("\n")
     experimenter.read("Keys: s stops the trial")
+    assert check_shown(stage, "The trial is running", TRIAL)["left_s"] == 3  # The participant is counted in.
     experimenter.type("u")
     experimenter.read("no failure to undo")
     # A user who does not look at the track leaves it, again and again.
@@ -98,8 +113,7 @@ def session(stage, start):
     second = experimenter.read(r"failure (\d+): (\w+)", 90)
     experimenter.type("s")
     shown = experimenter.read(r"test: stopped, [\d.]+ s, failures: (\d+)")
-    doing = next(tick["study"]["doing"] for tick in read_ticks(stage.simulation, 30, ("study", "characters"))
-                 if "The trial is over" in tick.get("study", {}).get("doing", ""))
+    doing = check_shown(stage, "The trial is over", STOPPED)["doing"]
     assert re.search(r"has moved for \d+ min: a rest of \d+ min comes next", doing), doing
     experimenter.answer("r to repeat", f"undo {second[1]}")
     experimenter.read(f"'undo {second[1]}' is none of these; nothing was changed")
@@ -119,11 +133,15 @@ def session(stage, start):
     experimenter.type("\n3\n")  # Ahead of any prompt: answers none of them.
     experimenter.read("has ended before: stopped")
     experimenter.answer("r to repeat", "")
-    experimenter.answer("fun, 1 to 5", "6")
+    experimenter.read("fun, 1 to 5")
+    check_shown(stage, "answers the survey", SURVEY)
+    experimenter.type("6\n")
     experimenter.answer("whole number(?s:.*)fun, 1 to 5", "4")  # What is typed before the prompt is dropped.
     experimenter.answer("exertion", "7")
     experimenter.answer("good .one line", "it walks")
     experimenter.answer("Survey at the end(?s:.*)wrist: like, 1 to 5", "5")
+    experimenter.answer(r"preferred interface \(1 wrist\):", "the first")
+    experimenter.answer(r"Type one of them(?s:.*)preferred interface \(1 wrist\):", "1")
     experimenter.answer("remarks .one line", "")
     assert experimenter.process.wait(60) == 0
     return int(first[1]), int(second[1]), int(shown[1])
@@ -151,6 +169,8 @@ def check_remedy(stage, start):
     stage.wait_for(lambda: assign("main/left_hand", "main/head").returncode == 0, "footingd's lease")
     experimenter = start()
     experimenter.answer("Type yes to confirm", "yes")
+    # What it waits for is said at once, long before the check gives up.
+    experimenter.read("Waiting for the devices: [^\n]*left_hand is missing", 5)
     experimenter.read("The devices are not ready: [^\n]*left_hand")
     experimenter.read("Press Enter to check again")
     stage.wait_for(lambda: assign("main/head", "main/left_hand").returncode == 0, "a remedy")
@@ -195,7 +215,15 @@ def check_journal(stage, first, second, shown):
     assert [(one["item"], one["interface"], one["at_end"], one["value"]) for one in of["rating"]] == [
         ("fun", "wrist", False, 4), ("like", "wrist", True, 5)], of["rating"]
     assert of["exertion"][0]["value"] == 7, of["exertion"]
-    assert [one["text"] for one in of["answer"]] == ["it walks", ""], of["answer"]
+    assert [one["text"] for one in of["answer"]] == ["it walks", "wrist", ""], of["answer"]
+
+
+def check_unattended(stage):
+    """Random answers and simulated devices do not get among the sessions of people."""
+    done = stage.run("footing-study", "run", stage.folder / "a.json", "--participant", "P03", "--unattended",
+                     "--sensor", stage.sensor, "--simulation", stage.simulation)
+    assert done.returncode == 2 and "P01/journal.jsonl is of a person" in done.stderr, done
+    assert not (stage.folder / "a.study/P03").exists()
 
 
 def main():
@@ -210,6 +238,7 @@ def main():
                                 "--simulation", stage.simulation)
 
         check_journal(stage, *session(stage, lambda: start("P01")))
+        check_unattended(stage)
         check_next(lambda: start("P03"))
         check_remedy(stage, lambda: start("P04"))
     return 0

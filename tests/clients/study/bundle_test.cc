@@ -122,6 +122,13 @@ TEST(StudyTables, DescribeEveryColumnOfTrials) {
   const std::string header = trials.tsv.substr(0, trials.tsv.find('\n'));
   EXPECT_EQ(static_cast<std::size_t>(std::count(header.begin(), header.end(), '\t')),
             trials.codebook.size());
+  // A column with a unit says so in its name and in the codebook, as BIDS has it.
+  for (const auto& [name, meaning] : trials.codebook.items()) {
+    const std::string unit = meaning.value("Units", "");
+    EXPECT_TRUE(unit.empty() || name.ends_with("_" + unit)) << name;
+  }
+  EXPECT_THAT(header, HasSubstr("\ttime_s\tdistance_m\ttime_to_first_failure_s\t"
+                                "heading_oscillation_rad\tanticipation_s\t"));
   // The first failure was undone: the one at 12.5 s is the first that counts.
   EXPECT_THAT(trials.tsv, HasSubstr("finished\tyes\t61.500\t0.000\t12.500\tn/a\tn/a\tstem\t"));
   EXPECT_THAT(trials.tsv, testing::EndsWith("\t0\t1\t0\t0\t0\n"));  // Of five kinds: a curve.

@@ -171,6 +171,38 @@ TEST(StudyFolder, NamesThoseWithAJournal) {
   EXPECT_THAT(Participants(folder.Path("")), testing::ElementsAre("P1", "P2"));
 }
 
+TEST(StudyFolder, OfAPersonIsNotOneForSimulatedSessions) {
+  const test::TemporaryFolder folder;
+  const std::string study = folder.Path("s");
+  ASSERT_TRUE(MakeFolder(study));
+  EXPECT_TRUE(RequireNoPerson(study));
+  for (const char* code : {"P1", "P2", "P3"}) {
+    ASSERT_TRUE(MakeFolder(ParticipantFolder(study, code)));
+  }
+  // A session that ended before its first event had no person in it.
+  ASSERT_TRUE(Journal::Create(JournalPath(study, "P3")));
+  auto simulated = Journal::Create(JournalPath(study, "P1"));
+  ASSERT_TRUE(simulated && simulated->Append(EventKind::kSessionStarted,
+                                             {{"participant", "P1"}, {"synthetic", true}}));
+  EXPECT_TRUE(RequireNoPerson(study));
+  auto other = Journal::Create(JournalPath(study, "P2"));
+  ASSERT_TRUE(other && other->Append(EventKind::kSessionStarted,
+                                     {{"participant", "P2"}, {"synthetic", false}}));
+  const auto refused = RequireNoPerson(study);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(refused.error().message, HasSubstr("s/P2/journal.jsonl is of a person"));
+}
+
+TEST(StudyFolder, IsOfAPersonAlsoIfTheyOnlyResumedASimulatedSession) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(MakeFolder(folder.Path("P1")));
+  auto journal = Journal::Create(folder.Path("P1/journal.jsonl"));
+  ASSERT_TRUE(journal && journal->Append(EventKind::kSessionStarted, {{"synthetic", true}}));
+  ASSERT_TRUE(journal->Append(EventKind::kSessionResumed, {{"synthetic", false}}));
+  EXPECT_FALSE(RequireNoPerson(folder.Path("")));
+}
+
 TEST(StudyFolder, ComparesTheProtocolWithoutStoringIt) {
   const test::TemporaryFolder folder;
   EXPECT_TRUE(CheckProtocol(folder.Path(""), "{}"));

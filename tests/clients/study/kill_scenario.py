@@ -17,8 +17,9 @@ RATINGS = [f"item {number}" for number in range(30)]  # A survey that lasts long
 PROTOCOL = {
     "version": 1, "name": "kills", "participants": [f"P{number:02}" for number in range(1, 16)],
     "interfaces": ["arm", "wrist"], "control": "arm", "seed": 5, "straight_tasks": ["walk_run"], "straight_trials": 2,
-    "test_tracks": ["1", "2"], "trial_limit_s": 3, "disk_mb": 1, "survey": {"ratings": RATINGS, "exertion": True},
-    "final_survey": {"ratings": RATINGS},
+    "test_tracks": ["1", "2"], "trial_limit_s": 3, "disk_mb": 1,
+    "survey": {"ratings": RATINGS, "questions": ["good", "bad"], "exertion": True},
+    "final_survey": {"ratings": RATINGS, "questions": ["good", "bad"], "overall": ["preferred interface", "remarks"]},
 }
 PROGRAMS = ("footing-study", "footing-sim", "footingd")
 LATEST_KILL_S, LATEST_IN_TRIAL_S, LATEST_IN_SURVEY_S, RUN_WITHIN_S = 4.0, 1.5, 0.01, 90

@@ -56,6 +56,13 @@ TEST(SurveyItems, AtTheEndAskEachItemOfEveryInterface) {
   EXPECT_EQ(after[6], (SurveyItem{"leg", "exertion", SurveyScale::kExertion, false}));
 }
 
+TEST(SurveyItems, LetThePreferredInterfaceBeChosenAmongThoseThatWereUsed) {
+  const auto items = ItemsAtEnd(Four(), {"leg", "arm"});
+  const SurveyItem& preferred = items[items.size() - 2];
+  EXPECT_EQ(preferred,
+            (SurveyItem{"", "preferred interface", SurveyScale::kChoice, true, {"leg", "arm"}}));
+}
+
 TEST(SurveyItems, AtTheEndAskOnceOfTheWholeStudyWhereTheProtocolSaysSo) {
   Protocol protocol = Four();
   protocol.final_survey.each_interface = false;

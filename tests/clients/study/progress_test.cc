@@ -245,6 +245,18 @@ TEST(Progress, ASurveyGoesOnWithTheItemsThatHaveNoAnswer) {
   EXPECT_EQ(left[1].item, "good");
 }
 
+TEST(Progress, AChoiceIsNotAskedAgain) {
+  const auto items = plan::ItemsAtEnd(plan::Protocol(), {"arm", "leg"});
+  Events events;
+  events.Add(
+      EventKind::kAnswer,
+      {{"interface", ""}, {"question", plan::kPreferredItem}, {"text", "leg"}, {"at_end", true}});
+  const auto left = Unanswered(items, events.list);
+  ASSERT_EQ(left.size(), items.size() - 1);
+  EXPECT_EQ(left.back().item, "remarks");
+  EXPECT_NE(left[left.size() - 2].item, plan::kPreferredItem);
+}
+
 TEST(TrialRecords, KeepRatingsAtTheEndApart) {
   Events events;
   events.Add(EventKind::kSessionStarted, {{"participant", "P7"}});

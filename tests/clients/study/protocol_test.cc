@@ -44,9 +44,22 @@ TEST(Protocol, ReadsItsKeysAndComments) {
   EXPECT_EQ(protocol->practice_s, 20);
   EXPECT_EQ(protocol->test_tracks, std::vector<std::string>{"2"});
   EXPECT_EQ(protocol->survey.ratings, std::vector<std::string>{"fun"});
-  EXPECT_EQ(protocol->survey.questions.size(), 2u);
   EXPECT_EQ(protocol->devices.least_battery, 0.5);
   EXPECT_TRUE(protocol->devices.allow_simulated);
+}
+
+TEST(Protocol, ItsSurveysTakeThePlaceOfThePapers) {
+  const auto protocol = ParseProtocol(With(R"(, "survey": {"questions": ["why"]},
+                                              "final_survey": {"ratings": ["like"]})"),
+                                      "a.json");
+  ASSERT_TRUE(protocol) << protocol.error().message;
+  EXPECT_TRUE(protocol->survey.ratings.empty());
+  EXPECT_EQ(protocol->survey.questions, std::vector<std::string>{"why"});
+  EXPECT_FALSE(protocol->survey.exertion);
+  EXPECT_EQ(protocol->final_survey.items.ratings, std::vector<std::string>{"like"});
+  EXPECT_TRUE(protocol->final_survey.items.questions.empty());
+  EXPECT_TRUE(protocol->final_survey.overall.empty());
+  EXPECT_TRUE(protocol->final_survey.each_interface);
 }
 
 struct Fault {
@@ -74,7 +87,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{With(R"(, "survey": {"ratings": ["exertion"]})"), "a scale of its own"},
         Fault{With(R"(, "survey": {"ratings": ["fun"], "questions": ["fun"]})"),
               "questions has \"fun\", which is a rating, too"},
-        Fault{With(R"(, "final_survey": {"each_interface": false, "overall": ["fun"]})"),
+        Fault{With(R"(, "final_survey": {"ratings": ["fun"], "each_interface": false,
+                                       "overall": ["fun"]})"),
               "overall has \"fun\", which is asked about the whole study already"},
         Fault{With(R"(, "practice_s": -1)"), "practice_s is -1; it must be a number from"},
         Fault{With(R"(, "straight_trials": 1.5)"), "straight_trials is 1.5"},

@@ -1,11 +1,17 @@
+#include <unistd.h>
+
+#include <boost/asio/post.hpp>
 #include <cmath>
+#include <iostream>
 #include <map>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "clients/study/screen/screen_message.h"
 #include "clients/study/session/active_time.h"
 #include "clients/study/session/anticipation.h"
+#include "clients/study/session/console.h"
 #include "clients/study/session/heading.h"
 #include "clients/study/session/respondent.h"
 #include "clients/study/session/trial_tracker.h"
@@ -199,6 +205,84 @@ TEST(Rating, IsAWholeNumberOfTheScaleAndNothingElse) {
        {"", " ", "0", "6", "3.5", "-1", "3 4", "three", "99999999999999999999"}) {
     EXPECT_EQ(screen::ParseRating(wrong, 1, 5), std::nullopt) << wrong;
   }
+}
+
+TEST(Choice, IsTheNameOrTheNumberOfOneOfThem) {
+  const std::vector<std::string> interfaces = {"wrist", "arm"};
+  EXPECT_EQ(screen::ParseChoice("arm", interfaces), "arm");
+  EXPECT_EQ(screen::ParseChoice(" Wrist ", interfaces), "wrist");
+  EXPECT_EQ(screen::ParseChoice("2", interfaces), "arm");
+  for (const char* wrong : {"", "0", "3", "leg", "wrist arm", "-1"}) {
+    EXPECT_EQ(screen::ParseChoice(wrong, interfaces), std::nullopt) << wrong;
+  }
+  EXPECT_EQ(screen::ChoiceLine(interfaces), "1 wrist   2 arm");
+  screen::Shown shown{.number = 1, .item = "preferred interface", .choices = interfaces};
+  EXPECT_TRUE(screen::Answers(shown, "arm"));
+  EXPECT_FALSE(screen::Answers(shown, "the arm"));
+  const auto read = screen::ParseShown(screen::ToText(shown));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, shown);
+  // Of a session that knows of no choices.
+  const auto older = screen::ParseShown(
+      R"({"number":1,"title":"","item":"good","scale":"","least":0,"greatest":0,"position":1,"count":1})");
+  ASSERT_TRUE(older) << older.error().message;
+  EXPECT_TRUE(screen::Answers(*older, "anything"));
+}
+
+TEST(Respondent, ChoosesEachAboutEquallyOften) {
+  std::map<std::string, int> times;
+  for (int i = 0; i < 3000; ++i) {
+    ++times[Respondent{3, "P1"}.Choose("", "q" + std::to_string(i), {"wrist", "arm"})];
+  }
+  // 1500 each, standard deviation sqrt(3000 / 4) = 27.4; five of them.
+  EXPECT_NEAR(times["wrist"], 1500, 137);
+  EXPECT_EQ(times["wrist"] + times["arm"], 3000);
+}
+
+/// The standard input and the standard error of the program, for one case.
+class Terminal {
+ public:
+  Terminal() : input_(::dup(STDIN_FILENO)), error_(std::cerr.rdbuf(said_.rdbuf())) {
+    int ends[2] = {-1, -1};
+    EXPECT_EQ(::pipe(ends), 0);
+    EXPECT_EQ(::dup2(ends[0], STDIN_FILENO), STDIN_FILENO);
+    ::close(ends[0]);
+    keys_ = ends[1];
+  }
+  ~Terminal() {
+    std::cerr.rdbuf(error_);
+    ::dup2(input_, STDIN_FILENO);
+    ::close(input_);
+    ::close(keys_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  void Type(const std::string& text) {
+    EXPECT_EQ(::write(keys_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  std::string said() const { return said_.str(); }
+
+ private:
+  std::ostringstream said_;
+  int input_ = -1;
+  int keys_ = -1;
+  std::streambuf* error_ = nullptr;
+};
+
+TEST(Console, RepeatsItsPromptAfterWhatIsPrintedMeanwhile) {
+  Terminal terminal;
+  Console console;
+  boost::asio::post(console.io(), [&] {
+    console.Print("Notice of footingd: slow");
+    terminal.Type("4\n");
+  });
+  const auto answer = console.Ask("Survey.\nfun, 1 to 5:");
+  ASSERT_TRUE(answer) << answer.error().message;
+  EXPECT_EQ(*answer, "4");
+  console.Print("after it");
+  EXPECT_EQ(terminal.said(),
+            "Survey.\nfun, 1 to 5: \nNotice of footingd: slow\nfun, 1 to 5: after it\n");
 }
 
 }  // namespace

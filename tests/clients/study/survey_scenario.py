@@ -13,8 +13,9 @@ from harness import Stage, read_ticks  # noqa: E402
 
 PROTOCOL = {
     "version": 1, "name": "survey", "participants": ["P01"], "interfaces": ["wrist"], "seed": 2, "practice_s": 0,
-    "straight_trials": 0, "test_tracks": [], "survey": {"ratings": ["fun", "stress"], "questions": ["good"]},
-    "final_survey": {"ratings": ["like", "ease"], "questions": [], "overall": []}, "devices": {"allow_simulated": True},
+    "straight_trials": 0, "test_tracks": [],
+    "survey": {"ratings": ["fun", "stress"], "questions": ["good"], "exertion": True},
+    "final_survey": {"ratings": ["like", "ease"], "questions": [], "overall": ["preferred interface"]}, "devices": {"allow_simulated": True},
     "disk_mb": 1,
 }
 
@@ -72,19 +73,21 @@ def main():
         experimenter = start()
         experimenter.read("goes on with question 4 of 4")  # What was answered is not asked again.
         participant.answer("4 of 4(?s:.*)good(?s:.*)press Enter", "it walks")
-        participant.answer("Looking back: interface wrist(?s:.*)1 of 2(?s:.*)like(?s:.*)press Enter", "5")
-        participant.read("2 of 2(?s:.*)ease")
+        participant.answer("Looking back: interface wrist(?s:.*)1 of 3(?s:.*)like(?s:.*)press Enter", "5")
+        participant.read("2 of 3(?s:.*)ease")
         experimenter.process.kill()
         experimenter.process.wait()
         experimenter = start()
-        experimenter.read("Survey at the end(?s:.*)goes on with question 2 of 2")
-        participant.read("Looking back: interface wrist(?s:.*)2 of 2(?s:.*)ease")
-        experimenter.read("ease: on the participant's screen(?s:.*)Press t to ask here")
+        experimenter.read("Survey at the end(?s:.*)goes on with question 2 of 3")
+        participant.answer("Looking back: interface wrist(?s:.*)2 of 3(?s:.*)ease(?s:.*)press Enter", "3")
+        participant.answer("3 of 3(?s:.*)preferred interface(?s:.*)1  wrist(?s:.*)press Enter", "none")
+        participant.read("Type one of them: the number or the name")
+        experimenter.read("preferred interface: on the participant's screen(?s:.*)Press t to ask here")
         experimenter.type("t")
-        experimenter.answer("wrist: ease, 1 to 5", "3")
+        experimenter.answer(r"preferred interface \(1 wrist\):", "WRIST")
         participant.read("Please answer the experimenter(?s:.*)Thank you")
         assert experimenter.process.wait(60) == 0
-        assert answers(stage) == [4, 2, 10, "it walks", 5, 3], answers(stage)
+        assert answers(stage) == [4, 2, 10, "it walks", 5, 3, "wrist"], answers(stage)
         shown(stage, "")  # It is over.
         done = stage.run("footing-study", "run", stage.folder / "s.json", "--participant", "P01", "--survey",
                          "tcp:0.0.0.0:4711")

@@ -211,6 +211,89 @@ TEST_F(HudPictureTest, AStudyIsSeenByItsExperimenterAloneAtEverySize) {
                  });
 }
 
+TEST_F(HudPictureTest, AParticipantReadsWhatComesNextAtEverySizeAndNothingInATrial) {
+  const scene::made::Wish wish{.gait = stream::Gait::kStep};
+  const scene::Model bare = scene::made::ModelAfter(12, wish);
+  scene::Model model = bare;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  stream::StudyState& study = model.study.state;
+  study.participant = "P07";
+  study.interface = "wrist";
+  study.phase = "wrist.straight1";
+  study.next = "wrist.survey";
+  study.attempt = 1;
+  model.study.received_ns = now_ns;
+  const scene::WorldFrame ready = scene::made::TickAt(12, wish).frame.value();
+  scene::WorldFrame running = ready;
+  stream::TrialState& trial = running.characters.front().trial.emplace();
+  trial.trial = "P07.wrist.straight1.1";
+  trial.progress.phase = stream::TrialPhase::kRunning;
+  scene::Stage stage;
+  const scene::Picture picture = stage.Advance(bare, ready, now_ns, 0.01, {});
+  HudOptions subject;
+  subject.hidden = true;
+  struct State {
+    const char* name = "";
+    stream::StudyActivity activity = stream::StudyActivity::kWait;
+    double left_s = 0;
+  };
+  for (const Size& size : kPictureSizes) {
+    Resize(size.width, size.height);
+    const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
+    const Image plain = Show(picture, bare, ready, now_ns, subject, SizedName("subject", size));
+    for (const State& state : {State{"rest", stream::StudyActivity::kRest, 42},
+                               State{"count_in", stream::StudyActivity::kTrial, 3},
+                               State{"finished", stream::StudyActivity::kFinished, 0},
+                               State{"get_ready", stream::StudyActivity::kGetReady, 0},
+                               State{"survey", stream::StudyActivity::kSurvey, 0},
+                               State{"practice", stream::StudyActivity::kPractice, 250},
+                               State{"wait", stream::StudyActivity::kWait, 0}}) {
+      // The highest one at every size, the others where there is the least space.
+      if (size.width > 640 && state.activity != stream::StudyActivity::kRest) continue;
+      study.activity = state.activity;
+      study.left_s = state.left_s;
+      const auto name = SizedName(std::string("subject_") + state.name, size);
+      const Image with = Show(picture, model, ready, now_ns, subject, name);
+      const HudContent content{picture, model, ready, now_ns, model, now_ns};
+      const Box middle = BoxesOf(content, subject, pixels, HudScale(pixels, 1)).middle;
+      const auto [inside, outside] = Changed(with, plain, middle, size);
+      EXPECT_GT(inside, 1000) << name;
+      EXPECT_EQ(outside, 0) << name;
+    }
+    study.activity = stream::StudyActivity::kTrial;
+    study.left_s = 3;
+    const auto name = SizedName("subject_trial", size);
+    const Image with = Show(picture, model, running, now_ns, subject, name);
+    EXPECT_EQ(with.rgb, plain.rgb) << name;
+  }
+}
+
+TEST_F(HudPictureTest, ADeviceIsNotShownAsLiveWhileItsServerIsNotThere) {
+  const scene::made::Wish wish;
+  scene::Model model = scene::made::ModelAfter(12, wish);
+  model.links = {{"unix:/s", "footingd", scene::LinkState::kLive, ""}};
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  scene::Stage stage;
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  Resize(kWidth, kHeight);
+  const HudContent content{picture, model, frame, now_ns, model, now_ns};
+  const auto box = BoxesOf(content, {}, {kWidth, kHeight}, 1).devices;
+  ASSERT_TRUE(box);
+  const auto share_of_green = [&](const std::string& name) {
+    const Image image = Show(picture, model, frame, now_ns, {}, name);
+    // The dots of the devices, at the left edge below the bar of the response.
+    const Region dots{(box->low.x + 10) / kWidth, (box->low.x + 26) / kWidth,
+                      (box->low.y + 106) / kHeight, box->high.y / kHeight};
+    return ShareOf(
+        image, [](int red, int green, int blue) { return green > 180 && red < 130 && blue < 170; },
+        dots);
+  };
+  EXPECT_GT(share_of_green("devices_live"), 0.002);
+  model.links[0].state = scene::LinkState::kConnecting;
+  EXPECT_EQ(share_of_green("devices_unknown"), 0);
+}
+
 TEST_F(HudPictureTest, TheInterfacePanelStaysInItsBoxForEveryInterface) {
   for (const auto interface : stream::kUserInterfaces) {
     scene::made::Wish wish;

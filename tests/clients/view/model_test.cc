@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "clients/view/scene/show.h"
+#include "clients/view/scene/words.h"
 #include "common/units/units.h"
 #include "tests/clients/view/made_stream.h"
 
@@ -39,6 +40,76 @@ TEST(Model, AStatusListReplacesItsOwnServersDevicesOnly) {
   Apply(model, first);
   EXPECT_EQ(model.devices.size(), 1u);
   EXPECT_EQ(model.devices[0].source, 1);
+}
+
+stream::DeviceStatus StatusOf(std::uint32_t device, stream::DeviceRole role,
+                              stream::DeviceState state = stream::DeviceState::kLive) {
+  stream::DeviceStatus status;
+  status.device = device;
+  status.rig = "main";
+  status.role = role;
+  status.state = state;
+  return status;
+}
+
+Update SampleOf(std::uint32_t device) {
+  Update update;
+  stream::MotionSample sample;
+  sample.device = device;
+  update.motion.push_back(sample);
+  stream::BoardSample board;
+  board.device = device;
+  update.boards.push_back(board);
+  return update;
+}
+
+TEST(Model, AHandHasOneStripAfterItsDeviceOrItsServerWasStartedAgain) {
+  using stream::DeviceRole;
+  Model model;
+  Update status;
+  status.devices = {StatusOf(1, DeviceRole::kLeftHand), StatusOf(2, DeviceRole::kRightHand)};
+  Apply(model, status);
+  for (const std::uint32_t device : {1u, 2u}) Apply(model, SampleOf(device));
+  Update other = SampleOf(1);  // Of another server.
+  other.source = 1;
+  Apply(model, other);
+  EXPECT_EQ(model.strips.devices.size(), 3u);
+  // The left hand's device came back as number 3.
+  status.devices = {StatusOf(1, DeviceRole::kLeftHand, stream::DeviceState::kLost),
+                    StatusOf(2, DeviceRole::kRightHand), StatusOf(3, DeviceRole::kLeftHand)};
+  Apply(model, status);
+  Apply(model, SampleOf(3));
+  const auto keys = [](const auto& map) {
+    std::vector<std::pair<int, std::uint32_t>> all;
+    for (const auto& [key, value] : map) all.push_back(key);
+    return all;
+  };
+  using Keys = std::vector<std::pair<int, std::uint32_t>>;
+  EXPECT_EQ(keys(model.strips.devices), (Keys{{0, 2}, {0, 3}, {1, 1}}));
+  EXPECT_EQ(keys(model.boards), (Keys{{0, 2}, {0, 3}, {1, 1}}));
+  // A device that is only lost keeps its strip: it may come back.
+  status.devices->at(1).state = stream::DeviceState::kLost;
+  Apply(model, status);
+  EXPECT_EQ(model.strips.devices.size(), 3u);
+  // footingd was started again, and counts from the beginning.
+  status.devices = {StatusOf(1, DeviceRole::kRightHand)};
+  Apply(model, status);
+  EXPECT_EQ(keys(model.strips.devices), (Keys{{1, 1}}));
+}
+
+TEST(Model, NothingIsKnownOfADeviceWhoseServerIsNotThere) {
+  Model model = made::ModelAfter(1, {});
+  ASSERT_FALSE(model.devices.empty());
+  EXPECT_TRUE(IsCurrent(model, model.devices[0]));  // A recording.
+  model.links = {{"unix:/s", "footingd", LinkState::kLive, ""}};
+  EXPECT_TRUE(IsCurrent(model, model.devices[0]));
+  for (const LinkState state : {LinkState::kConnecting, LinkState::kStale}) {
+    model.links[0].state = state;
+    EXPECT_FALSE(IsCurrent(model, model.devices[0]));
+    for (const std::string& line : StatusScreen(model, made::ClockAt(8))) {
+      EXPECT_EQ(line.find(" live "), std::string::npos) << line;
+    }
+  }
 }
 
 TEST(Model, ThePhaseStripFollowsTheGaitController) {

@@ -12,6 +12,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 stream::Track StudyTrack() {
   stream::Track track = made::StraightTrack(66);
@@ -91,6 +92,41 @@ TEST(TrialText, OfATrialWithoutAnIdAndAFinishLineIsNotShown) {
   EXPECT_FALSE(ShowsTrial(practice));
   practice.finish_m = 60;
   EXPECT_TRUE(ShowsTrial(practice));
+}
+
+TEST(TrialText, InAStudyIsOfThePhaseAndTheAttemptThatItIsIn) {
+  CharacterPose pose;
+  stream::StudyState study;
+  EXPECT_EQ(ShownTrial(pose, study), nullptr);
+  pose.trial = RunningTrial();
+  EXPECT_EQ(ShownTrial(pose, study), &*pose.trial);  // Without a study, any.
+  study.participant = "P07";
+  study.phase = "wrist.straight1";
+  study.attempt = 2;
+  const auto shows = [&](const std::string& id) {
+    pose.trial->trial = id;
+    return ShownTrial(pose, study) != nullptr;
+  };
+  EXPECT_TRUE(shows("P07.wrist.straight1.2"));
+  // What practice and an earlier attempt have left goes on behind the prompt of this one.
+  EXPECT_FALSE(shows("P07.wrist.practice"));
+  EXPECT_FALSE(shows("P07.wrist.straight1.1"));
+  EXPECT_FALSE(shows("P07.wrist.straight1.20"));
+  study.phase = "wrist.practice";
+  study.attempt = 0;
+  EXPECT_TRUE(shows("P07.wrist.practice"));
+}
+
+TEST(TrialText, OfAnotherPhaseOfTheStudyIsNotOnTheTextScreen) {
+  Model model = made::ModelAfter(3, {});
+  Update update = made::TickAt(3.01, {});
+  update.frame->characters.front().trial = RunningTrial();
+  Apply(model, update);
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(3.01)),
+              Contains(HasSubstr("p07-2 running 12.3 s")));
+  model.study.state.participant = "P08";
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(3.01)), Not(Contains(HasSubstr("running 12.3 s"))));
+  EXPECT_THAT(StatusLine(model, made::ClockAt(3.01)), Not(HasSubstr("running 12.3 s")));
 }
 
 }  // namespace

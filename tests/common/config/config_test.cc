@@ -204,6 +204,14 @@ TEST(DataFile, IsReadToItsEndOrRefusedIfItIsTooLong) {
   const auto refused = ReadTextFile(path, 99'999);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kInvalidData);
+  // Its size and the limit, in one unit and never the same number, and what to do.
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("text is too large: it has 0.100000 MB, and at most 0.099999 MB are read; "
+                        "check that this is the right file, or shorten or split it"));
+  EXPECT_TRUE(ReadTextFile(path, 100'000));
+  std::ofstream(path) << std::string(7'074'956, 'x');
+  EXPECT_THAT(ReadTextFile(path).error().message,
+              HasSubstr("it has 7.1 MB, and at most 4.2 MB are read"));
 }
 
 TEST(Config, EachValueKnowsWhereItComesFrom) {

@@ -84,18 +84,20 @@ void DrawBattery(const Paint& p, ImVec2 at, const stream::DeviceStatus& device) 
 }
 
 void DrawDevice(const Paint& p, const Box& in, float y, const stream::DeviceStatus& device,
-                bool second_line) {
+                bool current, bool second_line) {
   const float s = p.scale;
-  p.Dot({in.low.x + 4 * s, y + 9 * s}, 4, ColourOf(device.state));
+  p.Dot({in.low.x + 4 * s, y + 9 * s}, 4, current ? ColourOf(device.state) : colour::kFaint);
   const bool has_role = device.role != stream::DeviceRole::kUnspecified;
   const std::string role = has_role ? scene::RoleText(device.role) : stream::Name(device.kind);
   p.Write(p.fonts.strong, {in.low.x + 16 * s, y}, colour::kText, role);
   DrawBattery(p, {in.high.x - 24 * s, y + 4 * s}, device);
   p.WriteRight(p.fonts.small, {in.high.x - 34 * s, y + 1 * s}, colour::kText,
-               scene::Fixed(device.report_rate_hz, 0) + " Hz");
+               current ? scene::Fixed(device.report_rate_hz, 0) + " Hz" : "- Hz");
   if (!second_line) return;
   const std::string second =
-      device.note.empty() ? device.serial + "  " + stream::Name(device.state) : device.note;
+      device.note.empty()
+          ? device.serial + "  " + (current ? stream::Name(device.state) : "unknown")
+          : device.note;
   const float stamp = device.simulated ? 92 * s : 0;
   p.Write(p.fonts.small, {in.low.x + 16 * s, y + 18 * s},
           device.note.empty() ? colour::kFaint : colour::kWarning,
@@ -157,7 +159,9 @@ void DrawDevicePanel(const Paint& p, const Box& box, const scene::Model& model,
   }
   y += kAboveDevices * s;
   for (std::size_t i = 0; i < extent.devices; ++i) {
-    DrawDevice(p, in, y, model.devices[i].status, extent.device_row == kDeviceRow);
+    const scene::Device& device = model.devices[i];
+    DrawDevice(p, in, y, device.status, scene::IsCurrent(model, device),
+               extent.device_row == kDeviceRow);
     y += extent.device_row * s;
   }
 }

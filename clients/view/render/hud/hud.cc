@@ -15,6 +15,7 @@
 #include "clients/view/render/hud/layout_panel.h"
 #include "clients/view/render/hud/lost_panel.h"
 #include "clients/view/render/hud/overlay.h"
+#include "clients/view/render/hud/participant_panel.h"
 #include "clients/view/render/hud/strip_panel.h"
 #include "clients/view/render/hud/study_panel.h"
 #include "clients/view/render/hud/t_pose_panel.h"
@@ -119,6 +120,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   const scene::CharacterPose* pose = FirstCharacter(content);
   // The person must know why the character stops.
   if (pose != nullptr) DrawLostPanel(p, *pose, notes);
+  if (options.hidden) DrawParticipantPanel(p, model, pose, content.now_ns, notes);
   // A round is a trial: its panel would say the same again.
   if (scene::ShowsGame(model.game, pose != nullptr && pose->trial ? &*pose->trial : nullptr)) {
     DrawGamePanel(p, model.game, notes);

@@ -11,13 +11,16 @@ constexpr const char* kBold = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.
 constexpr double kAmberMs = 50;
 constexpr double kRedMs = 150;
 
-ImFont* Load(const char* path, float pixels) {
+// Latin letters and the few signs that the screens use.
+constexpr ImWchar kSigns[] = {0x20, 0xff, 0x2013, 0x2026, 0x2190, 0x2193, 0};
+constexpr ImWchar kCountSigns[] = {' ', '!', '0', ':', 'G', 'G', 'o', 'o', 0};
+
+/// `signs` outlives the font's atlas.
+ImFont* Load(const char* path, float pixels, const ImWchar* signs = kSigns) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   std::error_code none;
-  // Latin letters and the few signs that the screens use.
-  static const ImWchar kSigns[] = {0x20, 0xff, 0x2013, 0x2026, 0x2190, 0x2193, 0};
   if (std::filesystem::exists(path, none)) {
-    if (ImFont* font = atlas.AddFontFromFileTTF(path, pixels, nullptr, kSigns)) return font;
+    if (ImFont* font = atlas.AddFontFromFileTTF(path, pixels, nullptr, signs)) return font;
   }
   ImFontConfig config;
   config.SizePixels = pixels;
@@ -27,8 +30,13 @@ ImFont* Load(const char* path, float pixels) {
 }  // namespace
 
 Fonts LoadFonts(float scale) {
-  return {Load(kPlain, 10.5f * scale), Load(kPlain, 12.5f * scale), Load(kPlain, 15 * scale),
-          Load(kBold, 15 * scale),     Load(kBold, 21 * scale),     Load(kBold, 40 * scale)};
+  return {Load(kPlain, 10.5f * scale),
+          Load(kPlain, 12.5f * scale),
+          Load(kPlain, 15 * scale),
+          Load(kBold, 15 * scale),
+          Load(kBold, 21 * scale),
+          Load(kBold, 40 * scale),
+          Load(kBold, 110 * scale, kCountSigns)};
 }
 
 ImU32 ColourOf(stream::Gait gait) {

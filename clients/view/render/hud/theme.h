@@ -15,6 +15,7 @@ struct Fonts {
   ImFont* strong = nullptr;
   ImFont* heading = nullptr;
   ImFont* title = nullptr;
+  ImFont* count = nullptr;  ///< Digits, the colon and "Go!" alone, very large.
 };
 
 /// Loads DejaVu Sans, scaled; where it is not installed, ImGui's own letters.

@@ -66,12 +66,13 @@ void DrawWay(const Paint& p, const Box& box, const stream::TrialState& trial) {
 
 void DrawTrialPanel(const Paint& p, const scene::Model& model, const scene::CharacterPose& pose,
                     bool task_alone, Box& space) {
-  if (!pose.trial || !scene::ShowsTrial(*pose.trial)) return;
+  const stream::TrialState* trial = scene::ShownTrial(pose, model.study.state);
+  if (trial == nullptr) return;
   const float s = p.scale;
   const float width = std::min(space.width(), kMostWidth * s);
-  const auto text = TextOf(p, model, *pose.trial, task_alone, width - kMargins * s);
+  const auto text = TextOf(p, model, *trial, task_alone, width - kMargins * s);
   if (text.empty()) return;
-  const bool way = !task_alone && pose.trial->finish_m > 0;
+  const bool way = !task_alone && trial->finish_m > 0;
   float height = (kMargins + (way ? 18 : 0)) * s;
   for (const Lines& lines : text) {
     height += static_cast<float>(lines.text.size()) * (lines.font->FontSize + 3 * s);
@@ -87,7 +88,7 @@ void DrawTrialPanel(const Paint& p, const scene::Model& model, const scene::Char
       y += lines.font->FontSize + 3 * s;
     }
   }
-  if (way) DrawWay(p, {{in.low.x, y + 4 * s}, in.high}, *pose.trial);
+  if (way) DrawWay(p, {{in.low.x, y + 4 * s}, in.high}, *trial);
   space.low.y += height + 6 * s;
 }
 
