@@ -60,6 +60,7 @@ void AddPoseCommands(CLI::App& app, Shared& shared);       ///< t-pose, subject
 void AddTrialCommands(CLI::App& app, Shared& shared);      ///< trial
 void AddInterfaceCommand(CLI::App& app, Shared& shared);   ///< interface
 void AddLeaseCommand(CLI::App& app, Shared& shared);       ///< lease
+void AddSessionsCommand(CLI::App& app, Shared& shared);    ///< sessions
 void AddTrustCommand(CLI::App& app, Shared& shared);       ///< trust
 void AddConfigCommand(CLI::App& app, Shared& shared);      ///< config
 void AddDiscoverCommand(CLI::App& app, Shared& shared);    ///< discover

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddTrialCommands(*app, shared);
   footing::ctl::AddInterfaceCommand(*app, shared);
   footing::ctl::AddLeaseCommand(*app, shared);
+  footing::ctl::AddSessionsCommand(*app, shared);
   footing::ctl::AddTrustCommand(*app, shared);
   footing::ctl::AddDiscoverCommand(*app, shared);
   footing::ctl::AddConfigCommand(*app, shared);

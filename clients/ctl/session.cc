@@ -33,7 +33,7 @@ class Session::Implementation {
   explicit Implementation(SessionOptions options) : signals_(io_, SIGINT, SIGTERM) {
     dialled_.address = options.address;
     dialled_.client_name = "footing-ctl";
-    dialled_.role = v1::ROLE_CONTROL;
+    dialled_.role = options.role;
     dialled_.channels = std::move(options.channels);
     dialled_.max_hz = options.max_hz;
     dialled_.queue_ticks = kQueueTicks;
@@ -63,7 +63,7 @@ class Session::Implementation {
   /// Over TCP a token or a certificate gives control. Who has neither may look; a command is then
   /// refused, with the reason.
   void ViewOnly() {
-    if (!dialled_.address.OverTcp() || dialled_.role == v1::ROLE_VIEW) return;
+    if (!dialled_.address.OverTcp() || dialled_.role != v1::ROLE_CONTROL) return;
     dialled_.role = v1::ROLE_VIEW;
     Connect();
   }

@@ -22,6 +22,7 @@ struct SessionOptions {
   std::vector<std::string> channels = {"status", "setup"};  ///< "motion", "boards", ... as needed.
   double max_hz = 0;                                        ///< 0: every tick.
   double connect_within_s = 3;
+  v1::Role role = v1::ROLE_CONTROL;
 };
 
 /// kInterrupted: SIGINT or SIGTERM; every later wait ends at once, too.
@@ -31,9 +32,9 @@ using timer::Waited;
 /// while it waits. One thread. While it exists SIGINT and SIGTERM end waits, not the program.
 class Session {
  public:
-  /// Connects with the role control, or over TCP with the role view where the server does not give
-  /// control, and takes the first snapshot. NoDevice (exit 3) when footingd is not there within the
-  /// time, Failure with its words when it refuses.
+  /// Connects with the role of the options; where that is control, over TCP with the role view if
+  /// the server does not give control. Takes the first snapshot. NoDevice (exit 3) when footingd is
+  /// not there within the time, Failure with its words when it refuses.
   static Result<std::unique_ptr<Session>> Open(SessionOptions options);
   ~Session();
   Session(const Session&) = delete;

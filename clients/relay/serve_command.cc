@@ -54,6 +54,10 @@ Result<EdgeOptions> EdgeOptionsOf(const ServeFlags& flags) {
   options.rate_hz = flags.rate_hz;
   options.sessions.max_sessions = flags.max_sessions;
   options.sessions.max_sessions_per_user = flags.max_sessions;
+  // Many viewers come from one address, and nobody controls a relay.
+  options.sessions.max_sessions_per_host = flags.max_sessions;
+  options.sessions.max_sessions_per_certificate = flags.max_sessions;
+  options.sessions.control_places = 0;
   options.access = flags.access;
   if (const auto checked = options.access.Check(); !checked) {
     return UsageError("--insecure-lan needs a --token-file");

@@ -53,6 +53,8 @@ const char* Guarded(const v1::Command& command) {
     case v1::Command::kRequestDeviceStatus:
     case v1::Command::kTakeLease:
     case v1::Command::kReleaseLease:
+    case v1::Command::kListSessions:
+    case v1::Command::kEndSessions:
     case v1::Command::ACTION_NOT_SET:
       break;
   }

@@ -65,6 +65,8 @@ void AccessSettings::Bind(config::Binder& binder) {
   binder.Text(
       "token_file", token_file,
       "File (mode 0600) with a token by which clients over TCP and TLS get the role control");
+  binder.Text("view_token_file", view_token_file,
+              "File (mode 0600) with another token, by which such clients get the role view");
   binder.Text(
       "clients_file", clients_file,
       "File with the certificates of clients over TLS, lines \"sha256:... ROLE [NAME]\" with "
@@ -74,8 +76,9 @@ void AccessSettings::Bind(config::Binder& binder) {
       "File (mode 0600) with this server's key and certificate for TLS, made where it is "
       "missing; empty: identity.pem in state_directory (footingd), else in $STATE_DIRECTORY, else "
       "in $XDG_STATE_HOME/footing, else in ~/.local/state/footing");
-  binder.Flag("insecure_lan", insecure_lan,
-              "Listen on tcp: beyond this host WITHOUT ENCRYPTION; needs token_file");
+  binder.Flag(
+      "insecure_lan", insecure_lan,
+      "Listen on tcp: beyond this host WITHOUT ENCRYPTION; needs token_file or view_token_file");
   binder.Text(
       "advertise", advertise,
       "Name under which footing-ctl discover finds this server, while it listens beyond this "
@@ -83,8 +86,8 @@ void AccessSettings::Bind(config::Binder& binder) {
 }
 
 Result<void> AccessSettings::Check() const {
-  if (insecure_lan && token_file.empty()) {
-    return UsageError("config: insecure_lan needs a token_file");
+  if (insecure_lan && token_file.empty() && view_token_file.empty()) {
+    return UsageError("config: insecure_lan needs a token_file or a view_token_file");
   }
   constexpr std::size_t kLongestName = 63;  // RFC 6763, 4.1.1.
   if (advertise.size() > kLongestName) return UsageError("config: advertise has at most 63 bytes");
@@ -97,6 +100,15 @@ Result<void> AccessSettings::Apply(ServerOptions& options) const {
     auto token = ReadTokenFile(token_file);
     if (!token) return token.error();
     options.token = std::move(token).value();
+  }
+  if (!view_token_file.empty()) {
+    auto token = ReadTokenFile(view_token_file);
+    if (!token) return token.error();
+    options.view_token = std::move(token).value();
+    if (options.view_token == options.token) {
+      return UsageError("token_file " + token_file + " and view_token_file " + view_token_file +
+                        " have the same token; make another one with: openssl rand -hex 16");
+    }
   }
   if (!clients_file.empty()) {
     auto clients = ReadClients(clients_file);
@@ -111,15 +123,14 @@ Result<void> AccessSettings::Apply(ServerOptions& options) const {
 Result<void> AccessSettings::CheckStart(const std::vector<std::string>& listen) const {
   ServerOptions options;
   if (auto applied = Apply(options); !applied) return applied;
-  const bool has_keys = !options.token.empty() || !options.clients.empty();
   for (const std::string& text : listen) {
     const auto address = ParseAddress(text);
     if (!address) return address.error();
-    if (auto clear = CheckEncrypted(*address, insecure_lan && !token_file.empty()); !clear) {
+    if (auto clear = CheckEncrypted(*address, insecure_lan && options.has_token()); !clear) {
       return clear;
     }
     if (address->kind != Address::Kind::kTls) continue;
-    if (auto keys = CheckKeys(*address, has_keys); !keys) return keys;
+    if (auto keys = CheckKeys(*address, options.has_keys()); !keys) return keys;
     const std::string& identity = *options.identity_file;
     if (access(identity.c_str(), F_OK) != 0 && errno == ENOENT) continue;  // The start makes it.
     if (auto loaded = tls::Identity::Load(identity); !loaded) return loaded.error();
@@ -130,10 +141,15 @@ Result<void> AccessSettings::CheckStart(const std::vector<std::string>& listen) 
 Result<std::vector<std::string>> AccessSettings::Reapply(Server& server) const {
   ServerOptions read;
   if (const auto applied = Apply(read); !applied) return applied.error();
+  const ServerOptions& before = server.options();
   std::vector<std::string> changed;
-  if (read.token != server.options().token) changed.push_back("token_file");
-  if (read.clients != server.options().clients) changed.push_back("clients_file");
-  server.SetAccess(read.token, read.clients);
+  if (read.token != before.token) changed.push_back("token_file");
+  if (read.view_token != before.view_token) changed.push_back("view_token_file");
+  if (read.clients != before.clients) changed.push_back("clients_file");
+  if (const std::size_t ended = server.SetAccess(read); ended > 0) {
+    log::Info("sessions ended, since their token or certificate was replaced or removed: " +
+              std::to_string(ended));
+  }
   return changed;
 }
 

@@ -16,9 +16,10 @@ namespace footing::transport {
 
 /// Who may come over TCP and TLS: settings of both servers.
 struct AccessSettings {
-  std::string token_file;     ///< Whose token gives the role control over TCP and TLS.
-  std::string clients_file;   ///< Whose certificates give their roles over TLS.
-  std::string identity_file;  ///< The server's own; empty: tls::DefaultIdentityFile().
+  std::string token_file;       ///< Whose token gives the role control over TCP and TLS.
+  std::string view_token_file;  ///< Whose token gives the role view.
+  std::string clients_file;     ///< Whose certificates give their roles over TLS.
+  std::string identity_file;    ///< The server's own; empty: tls::DefaultIdentityFile().
   bool insecure_lan = false;
   std::string advertise;  ///< Name in the network, by mDNS; empty: not advertised.
 
@@ -30,8 +31,9 @@ struct AccessSettings {
   Result<void> CheckStart(const std::vector<std::string>& listen) const;
   /// Reads the files into the options; an error names the file, and the line.
   Result<void> Apply(ServerOptions& options) const;
-  /// Reads token_file and clients_file again, for the sessions that come to the server from now on:
-  /// the settings ("token_file") whose files have another content. An error changes nothing.
+  /// Reads the token files and clients_file again. What came in by a token or a certificate that is
+  /// gone is ended, and the log says how many sessions. Returns the settings ("token_file") whose
+  /// files have another content. An error changes nothing.
   Result<std::vector<std::string>> Reapply(Server& server) const;
 };
 

@@ -3,12 +3,12 @@
 #include <sys/types.h>
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <variant>
 
 #include "common/transport/peer.h"
 #include "common/transport/server.h"
+#include "common/transport/session_limits.h"
 #include "common/transport/token.h"
 #include "footing/v1/session.pb.h"
 
@@ -30,23 +30,36 @@ struct ServerUser {
   gid_t group = 0;
 };
 
+/// By what a caller got its role.
+enum class Grant { kAddress, kUser, kCertificate, kToken, kViewToken };
+
+/// "address" (loopback TCP), "user" (the kernel knows it), "certificate", "token", "view_token".
+std::string Name(Grant grant);
+
 struct Admitted {
   v1::Role role = v1::ROLE_VIEW;
   v1::Role highest = v1::ROLE_VIEW;  ///< That it could have asked for.
   std::string client_name;           ///< As PlainName() gives it.
+  Grant grant = Grant::kAddress;
+  Claim claim = {};
 
   bool may_administer() const { return highest == v1::ROLE_ADMIN; }
 };
 
+/// Which proof of who it is a caller lacked, for the log.
+enum class Lack { kNone, kAnyProof, kKnownCertificate, kRightToken };
+
 struct NotAdmitted {
   v1::Refused answer;
-  std::string proof;  ///< For the log: which proof of who it is was missing or wrong; empty: none.
+  Lack lack = Lack::kNone;
+  std::string lack_text = {};  ///< For the log; empty with kNone.
+  bool waits = false;          ///< A guess of a token: it is answered later.
 };
 
 /// What Hello messages change. A plain value.
 struct AdmissionState {
   TokenGuard token;
-  std::map<v1::Role, std::int64_t> with_role = {};  ///< Sessions, administrators' not counted.
+  PlacesTaken places = {};
 };
 
 using Admission = std::variant<Admitted, NotAdmitted>;
@@ -56,6 +69,10 @@ using Admission = std::variant<Admitted, NotAdmitted>;
 Admission Admit(const ServerOptions& options, const ServerUser& own, const Caller& caller,
                 const v1::Hello& hello, std::int64_t now_ns, AdmissionState& state);
 void Leave(const Admitted& admitted, AdmissionState& state);
+
+/// Why a session that was admitted with the keys `before` may not stay with those of `now`, for its
+/// client; empty when it may.
+std::string WhyRevoked(const AccessKeys& before, const AccessKeys& now, const Admitted& admitted);
 
 /// For logs and other people's screens: at most 64 bytes, printable.
 std::string PlainName(std::string name);

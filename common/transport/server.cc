@@ -7,6 +7,7 @@
 #include <boost/asio/post.hpp>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "common/tls/context.h"
 #include "common/tls/identity.h"
@@ -14,12 +15,12 @@
 #include "common/transport/exposure.h"
 #include "common/transport/listener.h"
 #include "common/transport/session.h"
+#include "common/transport/session_table.h"
 #include "common/units/units.h"
 
 namespace footing::transport {
 namespace {
 
-constexpr std::int64_t kMostLingering = 64;  // Sessions that are being refused.
 /// Beside those of the sessions: devices, files, listeners.
 constexpr std::int64_t kOtherDescriptors = 256;
 
@@ -40,12 +41,15 @@ class Server::Implementation {
     shared_.publication.set_epoch(shared_.epoch);
     // Protobuf would write a line to standard error for every message that a client got wrong.
     google::protobuf::SetLogHandler(nullptr);
+    shared_.on_sessions_command = [this](const SessionInfo& who, const v1::Command& command) {
+      return sessions_.CarryOut(who, command);
+    };
   }
 
   Result<void> Listen(const Address& address) {
     ReserveForSessions();
     ListenSecurity security;
-    security.insecure_lan = shared_.options.insecure_lan && !shared_.options.token.empty();
+    security.insecure_lan = shared_.options.insecure_lan && shared_.options.has_token();
     if (shared_.options.identity_file) {
       security.tls = [this, address] { return TlsContext(address); };
     }
@@ -78,7 +82,7 @@ class Server::Implementation {
     // Whoever floods the server gets its ticks behind all others.
     const std::int64_t now_ns = shared_.NowNs();
     for (const bool slowed : {false, true}) {
-      for (const auto& session : sessions_) {
+      for (const auto& session : sessions_.all()) {
         if (session->SlowedLately(now_ns) == slowed) session->Offer(tick);
       }
     }
@@ -86,7 +90,7 @@ class Server::Implementation {
   }
 
   void Answer(std::uint64_t number, const v1::CommandResult& result) {
-    for (const auto& session : sessions_) {
+    for (const auto& session : sessions_.all()) {
       if (session->info().session == number) return session->Answer(result);
     }
   }
@@ -98,9 +102,9 @@ class Server::Implementation {
     const std::uint64_t all = shared_.statistics.late_ticks;
     const std::string line =
         shared_.options.server_id + " is overloaded: " + std::to_string(all) +
-        " ticks skipped since start, sessions: " + std::to_string(sessions_.size());
+        " ticks skipped since start, sessions: " + std::to_string(sessions_.all().size());
     if (shared_.handlers.on_overload) shared_.handlers.on_overload({line});
-    for (const auto& session : sessions_) {
+    for (const auto& session : sessions_.all()) {
       session->Notify(v1::Notice::KIND_TICKS_LATE, line, all);
     }
   }
@@ -111,7 +115,7 @@ class Server::Implementation {
   ServerStatistics statistics() const {
     ServerStatistics statistics = shared_.statistics;
     statistics.sessions = static_cast<std::size_t>(
-        std::count_if(sessions_.begin(), sessions_.end(),
+        std::count_if(sessions_.all().begin(), sessions_.all().end(),
                       [](const auto& session) { return session->welcomed(); }));
     statistics.ring_bytes = shared_.publication.ring().bytes();
     statistics.channels_left_out = shared_.publication.channels_left_out();
@@ -120,7 +124,7 @@ class Server::Implementation {
 
   std::vector<stream::SessionStats> sessions() const {
     std::vector<stream::SessionStats> all;
-    for (const auto& session : sessions_) {
+    for (const auto& session : sessions_.all()) {
       if (session->welcomed()) all.push_back(session->Stats());
     }
     return all;
@@ -128,14 +132,14 @@ class Server::Implementation {
 
   void Stop(const std::string& reason) {
     listeners_.clear();
-    for (const auto& session : sessions_) session->End(reason);
+    for (const auto& session : sessions_.all()) session->End(reason);
   }
 
   void Drain(const std::string& reason, std::function<void()> done) {
     listeners_.clear();
     drained_ = std::move(done);
-    for (const auto& session : sessions_) session->Drain(reason);
-    if (sessions_.empty()) Drained();
+    for (const auto& session : sessions_.all()) session->Drain(reason);
+    if (sessions_.all().empty()) Drained();
   }
 
   void SetLimits(const SessionLimits& limits) {
@@ -143,11 +147,7 @@ class Server::Implementation {
     ReserveForSessions();
   }
 
-  void SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients) {
-    if (token != shared_.options.token) shared_.admission.token = TokenGuard(token);
-    shared_.options.token = token;
-    shared_.options.clients = clients;
-  }
+  std::size_t SetAccess(const AccessKeys& keys) { return sessions_.SetKeys(keys); }
 
   const ServerOptions& options() const { return shared_.options; }
 
@@ -155,13 +155,14 @@ class Server::Implementation {
   void ReserveForSessions() const {
     const SessionLimits& limits = shared_.options.sessions;
     ReserveDescriptors(static_cast<std::size_t>(limits.max_sessions + limits.admin_places +
-                                                kMostLingering + kOtherDescriptors));
+                                                SessionTable::kMostLingering + kOtherDescriptors));
   }
 
   Result<tls::Context> TlsContext(const Address& address) {
     const ServerOptions& options = shared_.options;
-    const bool has_keys = !options.token.empty() || !options.clients.empty();
-    if (const auto checked = CheckKeys(address, has_keys); !checked) return checked.error();
+    if (const auto checked = CheckKeys(address, options.has_keys()); !checked) {
+      return checked.error();
+    }
     if (!identity_) {
       auto identity = tls::Identity::LoadOrMake(*options.identity_file, "Footing");
       if (!identity) return identity.error();
@@ -188,21 +189,10 @@ class Server::Implementation {
     ++shared_.statistics.accepted;
     const auto session = std::make_shared<Session>(std::move(socket), ++last_number_, shared_,
                                                    [this](Session& ended) { OnEnd(ended); });
-    SessionCounts taken;
-    std::int64_t lingering = 0;
-    for (const auto& other : sessions_) {
-      const Peer &a = session->peer(), &b = other->peer();
-      lingering += other->refused() ? 1 : 0;
-      taken.all += other->refused() ? 0 : 1;
-      taken.of_user += !other->refused() && a.known == b.known && a.user == b.user ? 1 : 0;
-      const bool entering = other->secured() && !other->welcomed() && !other->refused();
-      taken.entering_of_host += session->secured() && entering && a.host == b.host ? 1 : 0;
-    }
-    const SessionLimits& limits = shared_.options.sessions;
-    const std::string full = WhyNoPlace(limits, session->peer(), geteuid(), taken);
+    const std::string full = sessions_.WhyFull(*session);
     // Those that are being refused linger for a moment; there is an end to them too.
-    if (!full.empty() && lingering >= kMostLingering) return;
-    sessions_.push_back(session);
+    if (!full.empty() && sessions_.lingering() >= SessionTable::kMostLingering) return;
+    sessions_.Add(session);
     if (full.empty()) return session->Start();
     session->StartRefused(
         v1::Refused::REASON_TOO_MANY_SESSIONS,
@@ -214,12 +204,9 @@ class Server::Implementation {
   }
 
   void OnEnd(Session& ended) {
-    const auto found = std::find_if(sessions_.begin(), sessions_.end(),
-                                    [&](const auto& session) { return session.get() == &ended; });
-    const std::shared_ptr<Session> session = *found;
-    sessions_.erase(found);
+    const std::shared_ptr<Session> session = sessions_.Remove(ended);
     boost::asio::post(io_, [session] {});  // It is still being called: let it go later.
-    if (sessions_.empty()) Drained();
+    if (sessions_.all().empty()) Drained();
     if (!session->welcomed()) return;
     Leave(session->admitted(), shared_.admission);
     if (shared_.handlers.on_session_end) shared_.handlers.on_session_end(session->info());
@@ -229,7 +216,7 @@ class Server::Implementation {
   Shared shared_;
   std::optional<tls::Identity> identity_;
   std::vector<std::unique_ptr<Listener>> listeners_;
-  std::vector<std::shared_ptr<Session>> sessions_;
+  SessionTable sessions_{shared_};
   std::uint64_t last_number_ = 0;
   TokenBucket late_lines_{0.1, 1};
   TokenBucket left_out_lines_{0.1, 1};
@@ -265,9 +252,7 @@ void Server::Drain(const std::string& reason, std::function<void()> done) {
   implementation_->Drain(reason, std::move(done));
 }
 void Server::SetLimits(const SessionLimits& limits) { implementation_->SetLimits(limits); }
-void Server::SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients) {
-  implementation_->SetAccess(token, clients);
-}
+std::size_t Server::SetAccess(const AccessKeys& keys) { return implementation_->SetAccess(keys); }
 const ServerOptions& Server::options() const { return implementation_->options(); }
 
 }  // namespace footing::transport

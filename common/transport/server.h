@@ -31,7 +31,18 @@ struct TickNumber {
   std::uint64_t missing_from = 0;  ///< First of those lost right in front of it; 0: none.
 };
 
-struct ServerOptions {
+/// By what clients over TCP and TLS get their roles.
+struct AccessKeys {
+  std::string token;                        ///< Gives the role control; empty: none does.
+  std::string view_token;                   ///< Gives the role view; empty: none does.
+  std::map<std::string, v1::Role> clients;  ///< By the fingerprint of a certificate, over TLS.
+
+  bool has_token() const { return !token.empty() || !view_token.empty(); }
+  /// Somebody could come in over TLS.
+  bool has_keys() const { return has_token() || !clients.empty(); }
+};
+
+struct ServerOptions : AccessKeys {
   std::string server_id;  ///< "footingd" or "footing-sim".
   std::string version;
   std::vector<Channel> channels;
@@ -43,16 +54,13 @@ struct ServerOptions {
   std::uint32_t max_queue_ticks = 1024;
   std::uint64_t epoch = 0;  ///< Of the source, for a relay; 0: a random one.
   SessionLimits sessions;
-  std::string
-      token;  ///< By which a client over TCP or TLS gets the role control; empty: none does.
-  /// Fingerprints of the certificates by which clients over TLS get their roles.
-  std::map<std::string, v1::Role> clients;
   /// Key and certificate for TLS, made where the file is missing when it first listens on tls:;
   /// none: there is no TLS.
   std::optional<std::string> identity_file;
   /// Listen beyond this host without encryption: anyone on the network path can read everything.
   bool insecure_lan = false;
   double hello_deadline_s = 3;
+  double wrong_token_wait_s = 2;  ///< Shorter than the 3 s after which a client gives up.
   double ping_interval_s = 1;
   double dead_after_s = 10;
   std::vector<std::string> capabilities;
@@ -160,8 +168,9 @@ class Server {
   void Drain(const std::string& reason, std::function<void()> done);
   /// For sessions that come from now on.
   void SetLimits(const SessionLimits& limits);
-  /// The same: who may come over TCP and TLS, as in the options.
-  void SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients);
+  /// Other keys, at once: sessions that came in by what is gone are ended with the reason. Returns
+  /// how many.
+  std::size_t SetAccess(const AccessKeys& keys);
   const ServerOptions& options() const;
 
  private:

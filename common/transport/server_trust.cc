@@ -58,14 +58,14 @@ class ClientTls : public boost::asio::execution_context::service {
   explicit ClientTls(boost::asio::execution_context& owner) : service(owner) {}
 
   std::optional<tls::Context> context;
+  bool shows_own = false;  ///< The user's own certificate.
 
  private:
   void shutdown() override {}
 };
 
-Result<tls::Context> NewClientContext() {
-  const std::string path = tls::ClientIdentityFile();
-  if (path.empty() || access(path.c_str(), F_OK) != 0) return tls::Context::ForClient(nullptr);
+Result<tls::Context> NewClientContext(const std::string& path, bool shows_own) {
+  if (!shows_own) return tls::Context::ForClient(nullptr);
   const auto own = tls::Identity::Load(path);
   if (!own) return own.error();
   return tls::Context::ForClient(&*own);
@@ -74,13 +74,17 @@ Result<tls::Context> NewClientContext() {
 }  // namespace
 
 Result<tls::Context> ClientContext(boost::asio::io_context& io) {
-  std::optional<tls::Context>& context = boost::asio::use_service<ClientTls>(io).context;
-  if (!context) {
-    auto made = NewClientContext();
+  auto& kept = boost::asio::use_service<ClientTls>(io);
+  const std::string path = tls::ClientIdentityFile();
+  const bool shows_own = !path.empty() && access(path.c_str(), F_OK) == 0;
+  // A certificate that was made while this client ran is shown from the next connection on.
+  if (!kept.context || (shows_own && !kept.shows_own)) {
+    auto made = NewClientContext(path, shows_own);
     if (!made) return made;
-    context = std::move(made).value();
+    kept.context = std::move(made).value();
+    kept.shows_own = shows_own;
   }
-  return *context;
+  return *kept.context;
 }
 
 }  // namespace footing::transport

@@ -26,6 +26,11 @@ FramedLimits LimitsOf(const ServerOptions& options) {
   return limits;
 }
 
+/// The server answers these itself, whatever its program does with others.
+bool ConcernsSessions(const v1::Command& command) {
+  return command.has_list_sessions() || command.has_end_sessions();
+}
+
 std::chrono::nanoseconds Duration(double seconds) {
   return std::chrono::nanoseconds(SecondsToNanoseconds(seconds));
 }
@@ -86,6 +91,7 @@ void Session::GrantTime() {
 
 void Session::OnTimer() {
   if (!connection_.open()) return;
+  if (guessing()) return AnswerGuess();
   const ServerOptions& options = shared_.options;
   // A pause of this program itself: what the client sent during it has not been read yet.
   if (WasLate(timer_)) return GrantTime();
@@ -110,6 +116,7 @@ void Session::OnTimer() {
 }
 
 void Session::OnFrame(std::string_view payload) {
+  if (guessing()) return;
   v1::Envelope message;
   if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
     BadMessage("this is not a message of Footing's protocol");
@@ -174,13 +181,13 @@ void Session::OnCommand(const v1::Command& command, std::int64_t arrived_ns) {
   open_commands_.insert(command.id());
   if (auto result = Carry(command, arrived_ns)) {
     result->set_id(command.id());
-    Answer(*result);
+    Answer(*result, !command.has_list_sessions());
   }
 }
 
-void Session::Answer(const v1::CommandResult& result) {
+void Session::Answer(const v1::CommandResult& result, bool remember) {
   if (open_commands_.erase(result.id()) == 0 || !connection_.open()) return;
-  answers_.Remember(result);
+  if (remember) answers_.Remember(result);
   v1::Envelope message;
   *message.mutable_command_result() = result;
   Send(message);
@@ -201,10 +208,13 @@ std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
              std::int64_t{deadline_ms} * kNanosecondsPerMillisecond) {
     failed.set_message("not carried out: its deadline of " + std::to_string(deadline_ms) +
                        " ms had passed");
-  } else if (!shared_.handlers.on_command) {
+  } else if (ConcernsSessions(command) ? !shared_.on_sessions_command
+                                       : !shared_.handlers.on_command) {
     failed.set_message(shared_.options.server_id + " takes no commands");
   } else if (const auto content = CheckContent(command); !content) {
     failed.set_message(content.error().message);
+  } else if (ConcernsSessions(command)) {
+    return shared_.on_sessions_command(info_, command);
   } else {
     return shared_.handlers.on_command(info_, command);
   }
@@ -229,7 +239,9 @@ void Session::Refused(v1::Refused::Reason reason, const std::string& message) {
 }
 
 void Session::BadMessage(const std::string& why) {
-  if (phase_ == Phase::kHello) {
+  if (guessing()) {
+    AnswerGuess();
+  } else if (phase_ == Phase::kHello) {
     Refused(v1::Refused::REASON_BAD_MESSAGE, why);
   } else {
     SayEnded(why);

@@ -35,7 +35,7 @@ struct Shared {
       : options(std::move(with)),
         handlers(std::move(and_with)),
         publication(options),
-        admission{TokenGuard(options.token)} {
+        admission{TokenGuard(options.token, options.view_token)} {
     loop.turns = std::make_shared<TurnQueue>(executor);
     replays = std::make_shared<TurnQueue>(executor, kReplayPace);
   }
@@ -52,14 +52,16 @@ struct Shared {
   /// Logs the line, unless another was logged within the last 10 s.
   void SayOverload(const OverloadLine& line);
   TokenBucket overload_lines{0.1, 1};
-  /// The same for who is kept out; the line says how many there were.
-  void SayDenied(const std::string& host, const std::string& why);
-  TokenBucket denied_lines{0.1, 1};
+  /// The same for who is kept out, for each kind of it; the line says how many there were of all.
+  void SayDenied(const std::string& host, Lack lack, const std::string& why);
+  std::map<Lack, TokenBucket> denied_lines;
   /// And for each kind of refusal; the line says how many there were of all kinds.
   void SayRefused(v1::Refused::Reason reason, const Peer& peer, const std::string& why);
   std::map<v1::Refused::Reason, TokenBucket> refused_lines;
   /// And for sessions that are ended since their client sent what it must not.
   TokenBucket ended_lines{0.1, 1};
+  /// Carries out what concerns other sessions: list_sessions and end_sessions.
+  std::function<v1::CommandResult(const SessionInfo&, const v1::Command&)> on_sessions_command;
 };
 
 /// One client's connection on the server's side, from Hello to Goodbye.
@@ -78,8 +80,9 @@ class Session : public std::enable_shared_from_this<Session> {
   /// A tick has just been published.
   void Offer(const SharedTick& tick);
 
-  /// Answers a command that was left open.
-  void Answer(const v1::CommandResult& result);
+  /// Answers a command that was left open. `remember`: for a repeated id; not what is long and
+  /// does no harm when it is asked for again.
+  void Answer(const v1::CommandResult& result, bool remember = true);
 
   /// Something slows this session, or all of them.
   void Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count);
@@ -92,20 +95,28 @@ class Session : public std::enable_shared_from_this<Session> {
 
   /// How it fares, for the channel `stats`.
   stream::SessionStats Stats() const;
+  /// The same with where it comes from and why it may, for an administrator.
+  v1::ConnectedSession Describe() const;
 
   const SessionInfo& info() const { return info_; }
   const Peer& peer() const { return peer_; }
   bool secured() const { return connection_.secured(); }
   /// Once it is welcomed.
   const Admitted& admitted() const { return admitted_; }
+  /// Its token is wrong, and the answer waits: it takes a place until then.
+  bool guessing() const { return phase_ == Phase::kGuessed; }
+  /// The answer at once, for somebody else needs the place.
+  void AnswerGuess();
   /// It was refused, and lingers until the client has seen why.
   bool refused() const { return phase_ == Phase::kRefused; }
   /// It waits for its budget, or did within the last second.
   bool SlowedLately(std::int64_t now_ns) const;
   bool welcomed() const { return phase_ == Phase::kWelcomed || phase_ == Phase::kSubscribed; }
+  /// It is welcomed, and nobody has ended it yet.
+  bool live() const { return welcomed() && connection_.open(); }
 
  private:
-  enum class Phase { kHello, kWelcomed, kSubscribed, kRefused };
+  enum class Phase { kHello, kGuessed, kWelcomed, kSubscribed, kRefused };
   struct Range {
     std::uint64_t next = 0;
     std::uint64_t last = 0;
@@ -163,6 +174,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Phase phase_ = Phase::kHello;
   Peer peer_;
   Admitted admitted_;
+  std::string guess_answer_;  ///< While it is guessing.
   std::function<void(Session&)> on_end_;
   FramedConnection connection_;
   timer::Timer timer_;

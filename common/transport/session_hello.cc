@@ -13,8 +13,11 @@ void Session::OnHello(const v1::Hello& hello) {
   auto admission = Admit(shared_.options, {geteuid(), getegid()}, caller, hello, shared_.NowNs(),
                          shared_.admission);
   if (const auto* why = std::get_if<NotAdmitted>(&admission)) {
-    if (!why->proof.empty()) shared_.SayDenied(peer_.host, why->proof);
-    return Refused(why->answer.reason(), why->answer.message());
+    if (why->lack != Lack::kNone) shared_.SayDenied(peer_.host, why->lack, why->lack_text);
+    if (!why->waits) return Refused(why->answer.reason(), why->answer.message());
+    phase_ = Phase::kGuessed;
+    guess_answer_ = why->answer.message();
+    return ArmTimer(shared_.options.wrong_token_wait_s);
   }
   admitted_ = std::get<Admitted>(std::move(admission));
   info_.client_name = admitted_.client_name;
@@ -27,5 +30,7 @@ void Session::OnHello(const v1::Hello& hello) {
   Send(message);
   ArmTimer(shared_.options.ping_interval_s);
 }
+
+void Session::AnswerGuess() { Refused(v1::Refused::REASON_TOKEN, guess_answer_); }
 
 }  // namespace footing::transport

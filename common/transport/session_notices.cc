@@ -16,9 +16,10 @@ void Shared::SayOverload(const OverloadLine& line) {
   if (handlers.on_overload && overload_lines.Take(NowNs())) handlers.on_overload(line);
 }
 
-void Shared::SayDenied(const std::string& host, const std::string& why) {
+void Shared::SayDenied(const std::string& host, Lack lack, const std::string& why) {
   ++statistics.denied;
-  if (!handlers.on_overload || !denied_lines.Take(NowNs())) return;
+  TokenBucket& lines = denied_lines.try_emplace(lack, 0.1, 1).first->second;
+  if (!handlers.on_overload || !lines.Take(NowNs())) return;
   handlers.on_overload({"refused a client from " + host + ": " + why + " (" +
                         std::to_string(statistics.denied) + " since start)"});
 }
@@ -47,7 +48,7 @@ void Session::OnSlowed(double wait_s) {
                            std::to_string(static_cast<int>(messages_per_s_)) +
                            " messages a second and is slowed",
                        info_.session});
-  if (phase_ == Phase::kHello || !slowed_notices_.Take(shared_.NowNs())) return;
+  if (!welcomed() || !slowed_notices_.Take(shared_.NowNs())) return;
   Notify(v1::Notice::KIND_SLOWED,
          "this client exceeds the server's rate limit; its messages are delayed", record_.slowed);
 }

@@ -5,6 +5,7 @@
 #include "common/transport/handshake.h"
 #include "common/transport/session.h"
 #include "common/units/units.h"
+#include "common/wire/wire.h"
 
 namespace footing::transport {
 namespace {
@@ -62,6 +63,16 @@ stream::SessionStats Session::Stats() const {
   stats.queue_ticks = static_cast<std::uint32_t>(waiting);
   if (oldest != nullptr) stats.lag_s = NanosecondsToSeconds(now_ns - oldest->host_ns);
   return stats;
+}
+
+v1::ConnectedSession Session::Describe() const {
+  v1::ConnectedSession described;
+  *described.mutable_stats() = wire::ToProto(Stats());
+  if (peer_.known) described.set_user(peer_.user);
+  described.set_host(peer_.host);
+  described.set_granted_by(Name(admitted_.grant));
+  described.set_certificate(admitted_.claim.certificate);
+  return described;
 }
 
 }  // namespace footing::transport

@@ -80,13 +80,13 @@ TokenBucket& TokenGuard::TriesOf(const std::string& host, std::int64_t now_ns) {
   return tries_.try_emplace(full ? "" : host, kTriesPerS, kTries).first->second;
 }
 
-bool TokenGuard::Accepts(std::string_view presented, const std::string& host, std::int64_t now_ns) {
-  if (token_.empty()) return false;
-  TokenBucket& tries = TriesOf(host, now_ns);
-  if (!tries.HasOne(now_ns)) return false;
-  if (IsSameSecret(presented, token_)) return true;
-  tries.Charge(1);
-  return false;
+TokenGuard::Verdict TokenGuard::Check(std::string_view presented, const std::string& host,
+                                      std::int64_t now_ns) {
+  const bool control = IsSameSecret(presented, token_) && !token_.empty();
+  const bool view = IsSameSecret(presented, view_token_) && !view_token_.empty();
+  if (control) return {v1::ROLE_CONTROL};
+  if (view) return {v1::ROLE_VIEW};
+  return {v1::ROLE_UNSPECIFIED, !TriesOf(host, now_ns).Take(now_ns)};
 }
 
 }  // namespace footing::transport

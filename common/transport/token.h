@@ -8,8 +8,10 @@
 
 #include "common/result/result.h"
 #include "common/transport/token_bucket.h"
+#include "footing/v1/session.pb.h"
 
-/// A secret by which a client over TCP gets the role control. It is never logged.
+/// Secrets by which clients over TCP and TLS get the role control, or only view. They are never
+/// logged.
 namespace footing::transport {
 
 /// The first line of a file that only its owner may read (mode 0600 or less): 16 to 256 printable
@@ -23,19 +25,28 @@ Result<std::string> TokenFromEnvironment();
 /// Whether both are equal, in a time that does not depend on where they differ.
 bool IsSameSecret(std::string_view a, std::string_view b);
 
-/// The server's token. After 5 wrong ones of a host every further one of it waits: one in 5 s is
-/// looked at. Others are not kept out by it, unless hundreds of hosts guess at once.
+/// The server's tokens. A right one is right at any time, however many wrong ones came from its
+/// host: who shares an address with somebody that guesses is not kept out. Guessing stays slow
+/// since wrong ones wait for their answer, all but the first five of a host and one more in 5 s.
 class TokenGuard {
  public:
-  /// Empty: no token is right.
-  explicit TokenGuard(std::string token = "") : token_(std::move(token)) {}
+  struct Verdict {
+    v1::Role role = v1::ROLE_UNSPECIFIED;  ///< That the token gives; unspecified: it is wrong.
+    bool waits = false;                    ///< A wrong one: answer it later.
+  };
 
-  bool Accepts(std::string_view presented, const std::string& host, std::int64_t now_ns);
+  /// Gives control, or only view; an empty one is never right.
+  explicit TokenGuard(std::string token = "", std::string view_token = "")
+      : token_(std::move(token)), view_token_(std::move(view_token)) {}
+
+  /// Neither the result nor the time that it takes says in what a wrong token differs.
+  Verdict Check(std::string_view presented, const std::string& host, std::int64_t now_ns);
 
  private:
   TokenBucket& TriesOf(const std::string& host, std::int64_t now_ns);
 
   std::string token_;
+  std::string view_token_;
   std::map<std::string, TokenBucket> tries_;  ///< Of hosts that were wrong lately.
 };
 

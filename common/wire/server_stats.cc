@@ -5,8 +5,6 @@ namespace {
 
 v1::TickStats ToProto(const stream::TickStats& value);
 stream::TickStats FromProto(const v1::TickStats& message);
-v1::SessionStats ToProto(const stream::SessionStats& value);
-stream::SessionStats FromProto(const v1::SessionStats& message);
 v1::DeviceStats ToProto(const stream::DeviceStats& value);
 stream::DeviceStats FromProto(const v1::DeviceStats& message);
 
@@ -19,26 +17,6 @@ void Fields(Way way, const stream::TickStats&) {
   FOOTING_FIELD(left_out);
 }
 FOOTING_BOTH_WAYS(TickStats)
-
-template <typename Way>
-void Fields(Way way, const stream::SessionStats&) {
-  FOOTING_FIELD(session);
-  FOOTING_FIELD(client_name);
-  FOOTING_FIELD(role);
-  FOOTING_FIELD(local);
-  FOOTING_FIELD(connected_s);
-  FOOTING_FIELD(policy);
-  FOOTING_FIELD(queue_ticks);
-  FOOTING_FIELD(queue_capacity);
-  FOOTING_FIELD(lag_s);
-  FOOTING_FIELD(ticks_sent);
-  FOOTING_FIELD(ticks_dropped);
-  FOOTING_FIELD(slowed);
-  FOOTING_FIELD(clock_valid);
-  FOOTING_FIELD(clock_offset_s);
-  FOOTING_FIELD(clock_uncertainty_s);
-}
-FOOTING_BOTH_WAYS(SessionStats)
 
 template <typename Way>
 void Fields(Way way, const stream::DeviceStats&) {
@@ -61,6 +39,26 @@ void Fields(Way way, const stream::DeviceStats&) {
 FOOTING_BOTH_WAYS(DeviceStats)
 
 }  // namespace
+
+template <typename Way>
+void Fields(Way way, const stream::SessionStats&) {
+  FOOTING_FIELD(session);
+  FOOTING_FIELD(client_name);
+  FOOTING_FIELD(role);
+  FOOTING_FIELD(local);
+  FOOTING_FIELD(connected_s);
+  FOOTING_FIELD(policy);
+  FOOTING_FIELD(queue_ticks);
+  FOOTING_FIELD(queue_capacity);
+  FOOTING_FIELD(lag_s);
+  FOOTING_FIELD(ticks_sent);
+  FOOTING_FIELD(ticks_dropped);
+  FOOTING_FIELD(slowed);
+  FOOTING_FIELD(clock_valid);
+  FOOTING_FIELD(clock_offset_s);
+  FOOTING_FIELD(clock_uncertainty_s);
+}
+FOOTING_BOTH_WAYS(SessionStats)
 
 template <typename Way>
 void Fields(Way way, const stream::ServerStats&) {

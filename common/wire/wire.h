@@ -48,6 +48,8 @@ v1::GamePlayer ToProto(const stream::GamePlayer& value);
 v1::GameRound ToProto(const stream::GameRound& value);
 v1::GameState ToProto(const stream::GameState& value);
 v1::StudyState ToProto(const stream::StudyState& value);
+v1::SessionStats ToProto(const stream::SessionStats& value);
+stream::SessionStats FromProto(const v1::SessionStats& message);
 v1::ServerStats ToProto(const stream::ServerStats& value);
 v1::TrackSegment ToProto(const stream::TrackSegment& value);
 v1::FailureCounts ToProto(const stream::FailureCounts& value);

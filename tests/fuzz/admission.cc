@@ -9,8 +9,9 @@
 #include "tests/fuzz/message.h"
 
 /// Callers of every kind say any Hello to a server of any settings, wait, and leave. Nobody gets a
-/// role that nothing gives him, no role has more sessions than the settings allow, guessing is
-/// slowed, and what a wrong token was changes nothing that anybody sees.
+/// role that nothing gives him, no role, host or certificate has more sessions than the settings
+/// allow, wrong tokens wait for their answer and right ones do not, and what a wrong token was
+/// changes nothing that anybody sees.
 namespace footing::fuzz {
 namespace {
 
@@ -20,6 +21,7 @@ using transport::Caller;
 using transport::NotAdmitted;
 
 constexpr const char* kToken = "0123456789abcdef";
+constexpr const char* kViewToken = "fedcba9876543210";
 constexpr transport::ServerUser kOwn{1000, 1000};
 
 std::string Certificate(int number) { return "sha256:" + std::to_string(number); }
@@ -29,6 +31,9 @@ transport::ServerOptions Options(Input& input) {
   options.server_id = "fuzzed";
   const std::uint8_t how = input.Byte();
   if ((how & 1) != 0) options.token = kToken;
+  if (how % 3 == 1) options.view_token = kViewToken;
+  options.sessions.max_sessions_per_host = 1 + how % 5;
+  options.sessions.max_sessions_per_certificate = 1 + how % 4;
   options.insecure_lan = (how & 2) != 0;
   options.sessions.max_log_sessions = (how >> 2) % 4;
   options.sessions.max_control_sessions = (how >> 4) % 4;
@@ -71,14 +76,17 @@ v1::Hello AnyHello(Input& input) {
   hello.set_client_name(std::string(name.begin(), name.end()));
   if ((how & 8) == 0) return hello;
   const Bytes guess = (how & 16) != 0 ? Bytes() : input.String();
-  hello.set_token((how & 16) != 0 ? kToken : std::string(guess.begin(), guess.end()));
+  hello.set_token((how & 16) == 0   ? std::string(guess.begin(), guess.end())
+                  : (how & 32) == 0 ? kToken
+                                    : kViewToken);
   return hello;
 }
 
 class Door {
  public:
   explicit Door(Input& input)
-      : options_(Options(input)), state_{transport::TokenGuard(options_.token)} {}
+      : options_(Options(input)),
+        state_{transport::TokenGuard(options_.token, options_.view_token)} {}
 
   void Step(Input& input) {
     const std::uint8_t what = input.Byte();
@@ -94,7 +102,7 @@ class Door {
 
   void End() {
     while (!inside_.empty()) EndOne(0);
-    for (const auto& [role, count] : state_.with_role) Expect(count == 0);
+    Expect(state_.places.empty());
   }
 
  private:
@@ -112,6 +120,9 @@ class Door {
   bool HasToken(const v1::Hello& hello) const {
     return !options_.token.empty() && hello.token() == options_.token;
   }
+  bool HasViewToken(const v1::Hello& hello) const {
+    return !options_.view_token.empty() && hello.token() == options_.view_token;
+  }
 
   /// What gives the role, counted up from what the caller is.
   v1::Role Deserved(const Caller& caller, const v1::Hello& hello) const {
@@ -122,6 +133,7 @@ class Door {
     const auto known = options_.clients.find(caller.certificate);
     if (known != options_.clients.end()) return known->second;
     if (HasToken(hello)) return v1::ROLE_CONTROL;
+    if (HasViewToken(hello) && (caller.secured || options_.insecure_lan)) return v1::ROLE_VIEW;
     return caller.secured || options_.insecure_lan ? v1::ROLE_UNSPECIFIED : v1::ROLE_LOG;
   }
 
@@ -141,29 +153,28 @@ class Door {
     Expect(reason == R::REASON_TOKEN || reason == R::REASON_PROTOCOL_VERSION ||
            reason == R::REASON_ROLE || reason == R::REASON_TOO_MANY_SESSIONS);
     Expect(!refused.answer.message().empty() && refused.answer.message().size() < 1000);
-    Expect(refused.proof.empty() == (reason != R::REASON_TOKEN));
-    const std::string all = refused.answer.message() + refused.proof;
-    Expect(all.find(kToken) == std::string::npos);
-    if (reason != R::REASON_TOKEN || hello.token().empty() || HasToken(hello)) return;
+    Expect((refused.lack == transport::Lack::kNone) == (reason != R::REASON_TOKEN));
+    Expect(refused.lack_text.empty() == (reason != R::REASON_TOKEN));
+    const std::string all = refused.answer.message() + refused.lack_text;
+    Expect(all.find(kToken) == std::string::npos && all.find(kViewToken) == std::string::npos);
+    if (reason != R::REASON_TOKEN || hello.token().empty()) return;
+    const bool right = HasToken(hello) || HasViewToken(hello);
+    Expect(!right);  // At any time, whatever its host has guessed.
     v1::Hello other = hello;
     other.set_token(hello.token() + "x");
     transport::AdmissionState same = before;
-    if (!HasToken(other)) {  // Another wrong token has the same answer.
+    if (!HasToken(other) && !HasViewToken(other)) {  // Another wrong token has the same answer.
       const Admission again = Admit(options_, kOwn, caller, other, now_ns_, same);
-      Expect(std::get<NotAdmitted>(again).proof == refused.proof);
-      Expect(std::get<NotAdmitted>(again).answer.SerializeAsString() ==
-             refused.answer.SerializeAsString());
+      const auto& answer = std::get<NotAdmitted>(again);
+      Expect(answer.lack_text == refused.lack_text && answer.waits == refused.waits);
+      Expect(answer.answer.SerializeAsString() == refused.answer.SerializeAsString());
     }
-    if (options_.token.empty()) return;
-    other.set_token(options_.token);  // Would the right one have been looked at?
-    const Admission right = Admit(options_, kOwn, caller, other, now_ns_, before);
-    const auto* not_even = std::get_if<NotAdmitted>(&right);
-    if (not_even == nullptr || not_even->answer.reason() != R::REASON_TOKEN) {
+    if (refused.lack == transport::Lack::kRightToken && !refused.waits) {
       CheckGuesses(wrong_[caller.peer.host]);
     }
   }
 
-  /// One more wrong token of a host was looked at: five at once, then one in 5 s.
+  /// One more wrong token of a host was answered at once: five at once, then one in 5 s.
   void CheckGuesses(std::vector<std::int64_t>& guesses) {
     guesses.push_back(now_ns_);
     for (std::size_t i = 0; i < guesses.size(); ++i) {
@@ -188,8 +199,17 @@ class Door {
     }
     Expect(logs <= options_.sessions.max_log_sessions);
     Expect(controls <= options_.sessions.max_control_sessions);
-    Expect(logs == state_.with_role[v1::ROLE_LOG]);
-    Expect(controls == state_.with_role[v1::ROLE_CONTROL]);
+    Expect(logs == state_.places.with_role(v1::ROLE_LOG));
+    Expect(controls == state_.places.with_role(v1::ROLE_CONTROL));
+    std::map<std::string, std::int64_t> of_host, of_certificate;
+    for (const Admitted& one : inside_) {
+      if (one.may_administer() || one.role == v1::ROLE_CONTROL) continue;
+      const transport::Claim& claim = one.claim;
+      Expect(claim.host.empty() ||
+             ++of_host[claim.host] <= options_.sessions.max_sessions_per_host);
+      Expect(claim.certificate.empty() ||
+             ++of_certificate[claim.certificate] <= options_.sessions.max_sessions_per_certificate);
+    }
   }
 
   transport::ServerOptions options_;

@@ -219,7 +219,7 @@ def main():
         if arguments.real_time:
             set_priority(SERVER_PRIORITY)
         stage.start("footingd", "--listen", stage.sensor, "--listen", addresses["tcp"],
-                    "--source", f"stream:{stage.devices}")
+                    "--source", f"stream:{stage.devices}", "--set", "max_sessions_per_host=224")
         if arguments.real_time:
             set_priority(0)
         stage.wait_for_socket(stage.devices)

@@ -98,7 +98,8 @@ class Contest {
  private:
   static transport::ServerOptions Options() {
     transport::ServerOptions options = ServerOptionsFor(100, 30);
-    options.sessions.max_sessions = options.sessions.max_sessions_per_user = 2 * kContestViewers;
+    options.sessions.max_sessions = options.sessions.max_sessions_per_user =
+        options.sessions.max_sessions_per_host = 2 * kContestViewers;
     return options;
   }
 

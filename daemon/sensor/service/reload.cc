@@ -18,6 +18,7 @@ Config Reloaded(const Config& before, const Config& wanted,
   next.status_interval_s = wanted.status_interval_s;
   next.sessions = wanted.sessions;
   next.access.token_file = wanted.access.token_file;
+  next.access.view_token_file = wanted.access.view_token_file;
   next.access.clients_file = wanted.access.clients_file;
   next.Bind(next_binder);
   for (const auto& line :

@@ -10,6 +10,7 @@ Config Reloaded(const Config& before, const Config& wanted,
   Config old_config = before, new_config = wanted, next = before;
   next.serving.sessions = wanted.serving.sessions;
   next.serving.access.token_file = wanted.serving.access.token_file;
+  next.serving.access.view_token_file = wanted.serving.access.view_token_file;
   next.serving.access.clients_file = wanted.serving.access.clients_file;
   config::Binder old_binder, new_binder, next_binder;
   old_config.Bind(old_binder);

@@ -172,7 +172,7 @@ struct Served {
   /// Stops the simulation thread; each client gets what waits for it, and goodbye with the reason.
   /// `done` is called when the last one has ended.
   std::function<void(const std::string& reason, std::function<void()> done)> stop;
-  /// Takes limits and access of another config, for sessions that come from now on: the settings
+  /// Takes limits of another config, for sessions that come, and its access, for all: the settings
   /// whose files have another content. An error changes nothing.
   std::function<Result<std::vector<std::string>>(const Config& wanted)> reload;
   /// The thread that is stuck; empty: none.

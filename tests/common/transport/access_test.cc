@@ -51,6 +51,28 @@ TEST(Access, TheFilesOfTheSettingsComeIntoTheOptions) {
   EXPECT_NE(refused.error().message.find(settings.clients_file + ", line 1"), std::string::npos);
 }
 
+TEST(Access, TheViewTokenIsAnotherOneThanTheToken) {
+  const test::TemporaryFolder folder;
+  AccessSettings settings;
+  settings.token_file = folder.Path("token");
+  settings.view_token_file = folder.Path("view");
+  for (const std::string& file : {settings.token_file, settings.view_token_file}) {
+    std::ofstream(file) << "0123456789abcdef\n";
+    ASSERT_EQ(chmod(file.c_str(), 0600), 0);
+  }
+  ServerOptions options;
+  const auto same = settings.Apply(options);
+  ASSERT_FALSE(same.ok());
+  EXPECT_NE(same.error().message.find("have the same token"), std::string::npos);
+  std::ofstream(settings.view_token_file) << "fedcba9876543210\n";
+  ASSERT_TRUE(settings.Apply(options).ok());
+  EXPECT_EQ(options.view_token, "fedcba9876543210");
+  settings.token_file.clear();
+  settings.insecure_lan = true;
+  EXPECT_TRUE(settings.Check().ok());
+  EXPECT_TRUE(settings.CheckStart({"tcp:0.0.0.0:7700"}).ok());
+}
+
 TEST(Access, AClientsFileThatOthersMayWriteIsRefused) {
   const test::TemporaryFolder folder;
   AccessSettings settings;

@@ -9,6 +9,7 @@ namespace footing::transport {
 namespace {
 
 constexpr char kRightToken[] = "0123456789abcdef";
+constexpr char kRightViewToken[] = "view-0123456789abcdef";
 constexpr ServerUser kOwnUser{1000, 1000};
 constexpr std::int64_t kHelloNs = 1'000'000'000;
 
@@ -26,6 +27,7 @@ ServerOptions GuardedServer() {
   ServerOptions options;
   options.server_id = "test-server";
   options.token = kRightToken;
+  options.view_token = kRightViewToken;
   options.clients = {{"sha256:view", v1::ROLE_VIEW}, {"sha256:control", v1::ROLE_CONTROL}};
   return options;
 }
@@ -51,7 +53,9 @@ v1::Hello HelloFor(v1::Role role, const std::string& token = "") {
   return hello;
 }
 
-AdmissionState StateOf(const ServerOptions& options) { return {TokenGuard(options.token)}; }
+AdmissionState StateOf(const ServerOptions& options) {
+  return {TokenGuard(options.token, options.view_token)};
+}
 
 Admission AdmitAlone(const ServerOptions& options, const Caller& caller, const v1::Hello& hello) {
   AdmissionState state = StateOf(options);
@@ -87,6 +91,10 @@ TEST(Admission, EachCallerGetsItsHighestRoleAndNoMore) {
       {"insecure_lan, token", InsecureLanServer(), kOverTcp, kRightToken, v1::ROLE_CONTROL, kRole},
       {"TLS", GuardedServer(), kOverTls, "", v1::ROLE_UNSPECIFIED, kProof},
       {"TLS, token", GuardedServer(), kOverTls, kRightToken, v1::ROLE_CONTROL, kRole},
+      {"TLS, view token", GuardedServer(), kOverTls, kRightViewToken, v1::ROLE_VIEW, kRole},
+      {"TCP, view token", GuardedServer(), kOverTcp, kRightViewToken, v1::ROLE_LOG, kRole},
+      {"insecure_lan, view token", InsecureLanServer(), kOverTcp, kRightViewToken, v1::ROLE_VIEW,
+       kRole},
       {"TLS where nothing is known", OpenServer(), kOverTls, kRightToken, v1::ROLE_UNSPECIFIED,
        kProof},
       {"viewer's certificate", GuardedServer(), kViewersCertificate, "", v1::ROLE_VIEW, kRole},
@@ -109,7 +117,8 @@ TEST(Admission, EachCallerGetsItsHighestRoleAndNoMore) {
         EXPECT_EQ(admitted->highest, row.highest) << row.what;
       } else {
         EXPECT_EQ(std::get<NotAdmitted>(answer).answer.reason(), row.above) << row.what;
-        EXPECT_EQ(std::get<NotAdmitted>(answer).proof.empty(), row.above == kRole) << row.what;
+        EXPECT_EQ(std::get<NotAdmitted>(answer).lack == Lack::kNone, row.above == kRole)
+            << row.what;
       }
     }
   }
@@ -184,26 +193,122 @@ TEST(Admission, AWrongTokenShowsNowhere) {
   for (const std::string& wrong : {std::string("0123456789abcdeX"), std::string("X")}) {
     const auto refused = std::get<NotAdmitted>(
         AdmitAlone(GuardedServer(), kOverTls, HelloFor(v1::ROLE_VIEW, wrong)));
-    const std::string all = refused.answer.message() + refused.proof;
+    const std::string all = refused.answer.message() + refused.lack_text;
     EXPECT_EQ(all.find(wrong), std::string::npos) << all;
     EXPECT_EQ(all.find(kRightToken), std::string::npos) << all;
   }
 }
 
-TEST(Admission, GuessesAreCountedByHostAndFiveWaitEvenWithTheRightOne) {
+TEST(Admission, ARightTokenComesInWhileItsHostGuesses) {
   const ServerOptions options = GuardedServer();
   AdmissionState state = StateOf(options);
-  const auto admitted = [&](const Caller& caller, const std::string& token, double after_s) {
-    const auto now_ns = kHelloNs + static_cast<std::int64_t>(after_s * 1e9);
-    const auto hello = HelloFor(v1::ROLE_VIEW, token);
-    return std::holds_alternative<Admitted>(Admit(options, kOwnUser, caller, hello, now_ns, state));
+  const auto ask = [&](const std::string& token) {
+    return Admit(options, kOwnUser, kOverTls, HelloFor(v1::ROLE_VIEW, token), kHelloNs, state);
   };
-  for (int i = 0; i < 5; ++i) EXPECT_FALSE(admitted(kOverTls, "wrong", 0));
-  EXPECT_FALSE(admitted(kOverTls, kRightToken, 0));
+  for (int i = 0; i < 100; ++i) {
+    const auto wrong = std::get<NotAdmitted>(ask("wrong"));
+    EXPECT_EQ(wrong.waits, i >= 5) << "the first ones may be typing errors";
+    const auto right = ask(i % 2 == 0 ? kRightToken : kRightViewToken);
+    ASSERT_TRUE(std::holds_alternative<Admitted>(right));
+    Leave(std::get<Admitted>(right), state);
+  }
+}
+
+TEST(Admission, AnUnknownCertificateIsNamedWithWhatLetsItIn) {
+  const auto refused =
+      std::get<NotAdmitted>(AdmitAlone(GuardedServer(), kUnknownCertificate, HelloFor({})));
+  EXPECT_EQ(refused.lack, Lack::kKnownCertificate);
+  EXPECT_NE(refused.lack_text.find("add the line \"sha256:unknown view\""), std::string::npos)
+      << refused.lack_text;
+  EXPECT_EQ(refused.lack_text.find("no token"), std::string::npos);
+  const auto nothing = std::get<NotAdmitted>(AdmitAlone(GuardedServer(), kOverTls, HelloFor({})));
+  EXPECT_EQ(nothing.lack_text, "neither a token nor a certificate");
+}
+
+/// Asks again and again; how often it came in.
+int TimesIn(const ServerOptions& options, const Caller& caller, v1::Role role,
+            const std::string& token, int times, AdmissionState& state) {
+  int admitted = 0;
+  for (int i = 0; i < times; ++i) {
+    const auto answer = Admit(options, kOwnUser, caller, HelloFor(role, token), kHelloNs, state);
+    admitted += std::holds_alternative<Admitted>(answer) ? 1 : 0;
+  }
+  return admitted;
+}
+
+TEST(Admission, OneCertificateOrAddressLeavesPlacesToOthers) {
+  const ServerOptions options = GuardedServer();  // With the default limits.
+  AdmissionState state = StateOf(options);
   const Caller elsewhere{{false, 0, {}, "10.0.0.2"}, true};
-  EXPECT_TRUE(admitted(elsewhere, kRightToken, 0));
-  EXPECT_TRUE(admitted(kViewersCertificate, "", 0)) << "of the same host, but known";
-  EXPECT_TRUE(admitted(kOverTls, kRightToken, 5.1));
+  EXPECT_EQ(TimesIn(options, kViewersCertificate, v1::ROLE_VIEW, "", 250, state), 16);
+  EXPECT_EQ(TimesIn(options, kOverTls, v1::ROLE_VIEW, kRightViewToken, 250, state), 64 - 16)
+      << "of the same address";
+  EXPECT_EQ(TimesIn(options, kOperatorsCertificate, v1::ROLE_CONTROL, "", 50, state), 16)
+      << "control is counted apart, half of its places";
+  EXPECT_EQ(TimesIn(options, kOverTls, v1::ROLE_CONTROL, kRightToken, 50, state), 0);
+  EXPECT_EQ(TimesIn(options, elsewhere, v1::ROLE_CONTROL, kRightToken, 50, state), 16);
+  EXPECT_EQ(TimesIn(options, elsewhere, v1::ROLE_VIEW, kRightViewToken, 250, state), 64);
+  for (int host = 3; host < 10; ++host) {
+    const Caller other{{false, 0, {}, "10.0.0." + std::to_string(host)}, true};
+    TimesIn(options, other, v1::ROLE_VIEW, kRightViewToken, 100, state);
+  }
+  EXPECT_EQ(state.places.with_role(v1::ROLE_VIEW), 224 - 16) << "16 places wait for control";
+  EXPECT_EQ(TimesIn(options, kMember, v1::ROLE_VIEW, "", 1, state), 1) << "a local user";
+}
+
+TEST(Admission, PlacesComeBackWithTheLastSession) {
+  ServerOptions options = GuardedServer();
+  options.sessions.max_sessions_per_certificate = 1;
+  AdmissionState state = StateOf(options);
+  for (int i = 0; i < 3; ++i) {
+    const auto one =
+        Admit(options, kOwnUser, kViewersCertificate, HelloFor(v1::ROLE_VIEW), kHelloNs, state);
+    ASSERT_TRUE(std::holds_alternative<Admitted>(one));
+    const auto other =
+        Admit(options, kOwnUser, kViewersCertificate, HelloFor(v1::ROLE_VIEW), kHelloNs, state);
+    const auto& refused = std::get<NotAdmitted>(other).answer;
+    EXPECT_EQ(refused.reason(), v1::Refused::REASON_TOO_MANY_SESSIONS);
+    EXPECT_NE(refused.message().find("1 sessions of this certificate already"), std::string::npos);
+    Leave(std::get<Admitted>(one), state);
+    EXPECT_TRUE(state.places.empty());
+  }
+}
+
+TEST(Admission, FewPlacesAreNotKeptForControl) {
+  ServerOptions options = GuardedServer();
+  options.sessions.max_sessions = 3;  // A quarter of them is none.
+  AdmissionState state = StateOf(options);
+  EXPECT_EQ(TimesIn(options, kOverTls, v1::ROLE_VIEW, kRightViewToken, 5, state), 3);
+}
+
+TEST(Admission, WhatGaveTheRoleIsRevoked) {
+  const ServerOptions before = GuardedServer();
+  ServerOptions now = before;
+  const auto admit = [&](const Caller& caller, v1::Role role, const std::string& token) {
+    return std::get<Admitted>(AdmitAlone(before, caller, HelloFor(role, token)));
+  };
+  const auto by_token = admit(kOverTls, v1::ROLE_CONTROL, kRightToken);
+  const auto by_view_token = admit(kOverTls, v1::ROLE_VIEW, kRightViewToken);
+  const auto by_certificate = admit(kOperatorsCertificate, v1::ROLE_LOG, "");
+  const auto viewer = admit(kViewersCertificate, v1::ROLE_VIEW, "");
+  const auto local = admit(kMember, v1::ROLE_CONTROL, "");
+  const auto all = {by_token, by_view_token, by_certificate, viewer, local};
+  for (const Admitted& one : all) EXPECT_EQ(WhyRevoked(before, now, one), "");
+
+  now.token = "another-0123456789";
+  now.view_token.clear();
+  now.clients["sha256:control"] = v1::ROLE_VIEW;
+  now.clients.erase("sha256:view");
+  const auto says = [&](const Admitted& one, const std::string& text) {
+    return WhyRevoked(before, now, one).find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(says(by_token, "the token in the server's token_file was replaced"));
+  EXPECT_TRUE(says(by_view_token, "no view_token_file any more"));
+  EXPECT_TRUE(says(by_certificate, "only the role view now"));
+  EXPECT_TRUE(says(viewer, "sha256:view was removed from the server's clients_file"));
+  EXPECT_EQ(WhyRevoked(before, now, local), "");
+  now.clients["sha256:control"] = v1::ROLE_LOG;
+  EXPECT_EQ(WhyRevoked(before, now, by_certificate), "") << "the role that it has";
 }
 
 TEST(Admission, NamesAreShortAndPrintable) {

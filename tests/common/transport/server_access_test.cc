@@ -103,8 +103,69 @@ TEST_F(ServerAccess, ACertificateEnteredLaterComesInWithoutARestart) {
   const tls::Identity own = OwnCertificate();
   StartTlsServer();
   EXPECT_EQ(RoleOf(v1::ROLE_LOG, ""), std::nullopt);
-  server_->SetAccess("", {{own.fingerprint(), v1::ROLE_LOG}});
+  AccessKeys keys;
+  keys.clients[own.fingerprint()] = v1::ROLE_LOG;
+  EXPECT_EQ(server_->SetAccess(keys), 0u);
   EXPECT_EQ(RoleOf(v1::ROLE_LOG, ""), v1::ROLE_LOG);
+}
+
+TEST_F(ServerAccess, FilesReadAgainEndWhatCameInByWhatIsGone) {
+  AccessSettings settings;
+  settings.token_file = config_.Path("token");
+  settings.view_token_file = config_.Path("view");
+  settings.clients_file = config_.Path("clients");
+  settings.identity_file = config_.Path("identity.pem");
+  Write("token", "0123456789abcdef\n");
+  Write("view", "view-0123456789abcdef\n");
+  Write("clients", "# nobody yet\n");
+  ASSERT_TRUE(settings.Apply(options_).ok());
+  StartTlsServer();
+  const auto come = [&](std::size_t listener, const std::string& token) {
+    auto client = Connect(listener);
+    client->Read();
+    v1::Envelope hello = Hello();
+    hello.mutable_hello()->set_token(token);
+    client->Send(hello);
+    EXPECT_TRUE(WaitFor(*client, v1::Envelope::kWelcome));
+    return client;
+  };
+  const auto local = come(0, ""), by_token = come(kTls, "0123456789abcdef"),
+             by_view_token = come(kTls, "view-0123456789abcdef");
+  Write("token", "fedcba9876543210\n");
+  EXPECT_EQ(settings.Reapply(*server_).value(), std::vector<std::string>{"token_file"});
+  ASSERT_TRUE(WaitFor(*by_token, v1::Envelope::kGoodbye));
+  EXPECT_EQ(by_token->Find(v1::Envelope::kGoodbye)->goodbye().reason(),
+            "revoked: the token in the server's token_file was replaced; copy the new one to this "
+            "client");
+  settings.view_token_file.clear();
+  EXPECT_EQ(settings.Reapply(*server_).value(), std::vector<std::string>{"view_token_file"});
+  ASSERT_TRUE(WaitFor(*by_view_token, v1::Envelope::kGoodbye));
+
+  // The user's own certificate, which a real client shows.
+  Write("clients", OwnCertificate().fingerprint() + " log\n");
+  EXPECT_TRUE(settings.Reapply(*server_).ok());
+  StartClient(TlsAddress(Port()), "");
+  ASSERT_TRUE(RunUntilState(LinkState::kLive)) << why_;
+  Write("clients", "# nobody\n");
+  EXPECT_EQ(settings.Reapply(*server_).value(), std::vector<std::string>{"clients_file"});
+  ASSERT_TRUE(RunUntil([&] { return WhyHas("was removed from the server's clients_file"); }));
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  EXPECT_EQ(local->Find(v1::Envelope::kGoodbye), nullptr) << "nothing of its was revoked";
+}
+
+TEST_F(ServerAccess, EachKindOfMissingProofHasALineOfTheLog) {
+  options_.clients["sha256:another"] = v1::ROLE_VIEW;
+  StartTlsServer();
+  const auto nameless = Connect(kTls);
+  nameless->Read();
+  nameless->Send(Hello());
+  ASSERT_TRUE(WaitFor(*nameless, v1::Envelope::kRefused));
+  const std::string own = OwnCertificate().fingerprint();
+  EXPECT_EQ(RoleOf(v1::ROLE_VIEW, ""), std::nullopt);
+  ASSERT_EQ(overloads_.size(), 2u);
+  EXPECT_NE(overloads_[0].find("neither a token nor a certificate"), std::string::npos);
+  EXPECT_NE(overloads_[1].find("its certificate is not in the clients_file"), std::string::npos);
+  EXPECT_NE(overloads_[1].find(own + " view"), std::string::npos) << overloads_[1];
 }
 
 TEST_F(ServerAccess, BeyondThisHostTheTokenIsNotSentInClearUnlessAllowed) {

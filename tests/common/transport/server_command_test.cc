@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include "tests/common/transport/server_fixture.h"
 
 namespace footing::transport {
@@ -17,11 +19,31 @@ class ServerCommandTest : public ServerFixture {
     message.mutable_command()->set_id(id);
     message.mutable_command()->set_deadline_ms(deadline_ms);
     message.mutable_command()->mutable_set_rumble()->set_on(true);
+    return Call(client, message);
+  }
+  v1::CommandResult Call(TestClient& client, const v1::Envelope& message) {
     const std::size_t before = client.Count(v1::Envelope::kCommandResult);
     client.Send(message);
     EXPECT_TRUE(RunUntil([&] { return client.Count(v1::Envelope::kCommandResult) == before + 1; }));
     return client.messages.back().command_result();
   }
+  v1::CommandResult List(TestClient& client, std::uint64_t after = 0) {
+    v1::Envelope message;
+    message.mutable_command()->set_id(++last_id_);
+    message.mutable_command()->mutable_list_sessions()->set_after(after);
+    return Call(client, message);
+  }
+  v1::CommandResult EndThem(TestClient& client, const std::vector<std::uint64_t>& numbers,
+                            const std::string& reason = "") {
+    v1::Envelope message;
+    message.mutable_command()->set_id(++last_id_);
+    v1::EndSessions& end = *message.mutable_command()->mutable_end_sessions();
+    end.mutable_sessions()->Add(numbers.begin(), numbers.end());
+    end.set_reason(reason);
+    return Call(client, message);
+  }
+
+  std::uint64_t last_id_ = 100;
 };
 
 TEST_F(ServerCommandTest, ControlAndAdminAreCarriedOutViewAndLogAreNot) {
@@ -40,6 +62,51 @@ TEST_F(ServerCommandTest, ControlAndAdminAreCarriedOutViewAndLogAreNot) {
     EXPECT_NE(result.message().find("request control in Hello"), std::string::npos);
   }
   EXPECT_EQ(commands_.size(), 2u);
+}
+
+TEST_F(ServerCommandTest, SessionsAreListedWithWhereTheyComeFrom) {
+  StartServer();
+  const auto control = WithRole(v1::ROLE_CONTROL);
+  const auto viewer = WithRole(v1::ROLE_VIEW, 1);
+  const auto listed = List(*control);
+  ASSERT_TRUE(listed.ok()) << listed.message();
+  ASSERT_EQ(listed.sessions_size(), 2);
+  EXPECT_FALSE(listed.more_sessions());
+  const v1::ConnectedSession &own = listed.sessions(0), &other = listed.sessions(1);
+  EXPECT_TRUE(own.own());
+  EXPECT_EQ(own.stats().role(), "control");
+  EXPECT_EQ(own.user(), geteuid());
+  EXPECT_EQ(own.granted_by(), "user");
+  EXPECT_FALSE(other.own() || other.has_user());
+  EXPECT_EQ(other.stats().client_name(), "test");
+  EXPECT_EQ(other.host(), "127.0.0.1");
+  EXPECT_EQ(other.granted_by(), "address");
+  EXPECT_EQ(List(*control, own.stats().session()).sessions_size(), 1) << "those behind it";
+  EXPECT_NE(List(*viewer).message().find("need the role control"), std::string::npos);
+  EXPECT_TRUE(commands_.empty()) << "the program is not asked";
+}
+
+TEST_F(ServerCommandTest, AnAdministratorEndsSessionsWithAReason) {
+  StartServer();
+  const auto admin = WithRole(v1::ROLE_ADMIN);
+  const auto control = WithRole(v1::ROLE_CONTROL);
+  const auto viewer = WithRole(v1::ROLE_VIEW, 1);
+  const auto listed = List(*admin);
+  ASSERT_EQ(listed.sessions_size(), 3);
+  const std::uint64_t own = listed.sessions(0).stats().session(),
+                      others = listed.sessions(2).stats().session();
+  EXPECT_NE(EndThem(*control, {others}).message().find("needs the role admin"), std::string::npos);
+  EXPECT_NE(EndThem(*admin, {own}).message().find("is the one that asks"), std::string::npos);
+  EXPECT_NE(EndThem(*admin, {}).message().find("1 to 500 sessions"), std::string::npos);
+  EXPECT_EQ(viewer->Find(v1::Envelope::kGoodbye), nullptr);
+  const auto ended = EndThem(*admin, {others, 99}, "the lab closes");
+  ASSERT_TRUE(ended.ok()) << ended.message();
+  ASSERT_EQ(ended.sessions_size(), 1) << "99 has no session";
+  EXPECT_EQ(ended.sessions(0).stats().session(), others);
+  ASSERT_TRUE(WaitFor(*viewer, v1::Envelope::kGoodbye));
+  EXPECT_EQ(viewer->Find(v1::Envelope::kGoodbye)->goodbye().reason(),
+            "ended by an administrator: the lab closes");
+  EXPECT_EQ(List(*admin).sessions_size(), 2);
 }
 
 TEST_F(ServerCommandTest, ARepeatedIdGetsItsFirstAnswerAndIsCarriedOutOnce) {

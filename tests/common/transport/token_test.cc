@@ -12,6 +12,7 @@ namespace footing::transport {
 namespace {
 
 constexpr char kToken[] = "0123456789abcdef";
+constexpr char kViewToken[] = "view-0123456789abcdef";
 
 TEST(Token, OnlyAFileOfItsOwnerAloneWithALongLineIsTaken) {
   const test::TemporaryFolder folder;
@@ -49,35 +50,45 @@ TEST(Token, SecretsAreEqualOrNot) {
   EXPECT_FALSE(IsSameSecret("abc", ""));
 }
 
-TEST(Token, GuessingIsSlowedEvenWhenTheGuessIsRight) {
-  TokenGuard guard(kToken);
+TEST(Token, WrongOnesWaitForTheirAnswerAndTheRightOneDoesNot) {
+  TokenGuard guard(kToken, kViewToken);
+  const std::string host = "10.0.0.1";
   std::int64_t now_ns = 1'000'000'000;
-  EXPECT_TRUE(guard.Accepts(kToken, "10.0.0.1", now_ns));
-  for (int i = 0; i < 5; ++i) EXPECT_FALSE(guard.Accepts("wrong", "10.0.0.1", now_ns));
-  EXPECT_FALSE(guard.Accepts(kToken, "10.0.0.1", now_ns));
+  EXPECT_EQ(guard.Check(kToken, host, now_ns).role, v1::ROLE_CONTROL);
+  const auto waiting = [&](int guesses) {
+    int count = 0;
+    for (int i = 0; i < guesses; ++i) {
+      const auto verdict = guard.Check("wrong", host, now_ns);
+      EXPECT_EQ(verdict.role, v1::ROLE_UNSPECIFIED);
+      count += verdict.waits ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(waiting(25), 20) << "five typing errors are answered at once";
+  EXPECT_EQ(guard.Check(kToken, host, now_ns).role, v1::ROLE_CONTROL);
+  EXPECT_EQ(guard.Check(kViewToken, host, now_ns).role, v1::ROLE_VIEW);
   now_ns += 5'100'000'000;
-  EXPECT_TRUE(guard.Accepts(kToken, "10.0.0.1", now_ns));
-  EXPECT_FALSE(TokenGuard().Accepts("", "10.0.0.1", now_ns)) << "without a token none is right";
+  EXPECT_EQ(waiting(3), 2) << "one more in 5 s";
+  EXPECT_FALSE(guard.Check("wrong", "10.0.0.2", now_ns).waits) << "another host";
 }
 
-TEST(Token, GuessingKeepsNobodyElseOut) {
-  TokenGuard guard(kToken);
-  const std::int64_t now_ns = 1'000'000'000;
-  for (int i = 0; i < 100; ++i) EXPECT_FALSE(guard.Accepts("wrong", "10.0.0.1", now_ns));
-  EXPECT_TRUE(guard.Accepts(kToken, "10.0.0.2", now_ns));
+TEST(Token, WithoutATokenNoneIsRight) {
+  for (const std::string_view presented : {"", "wrong"}) {
+    EXPECT_EQ(TokenGuard().Check(presented, "10.0.0.1", 1).role, v1::ROLE_UNSPECIFIED);
+    EXPECT_EQ(TokenGuard(kToken).Check(presented, "10.0.0.1", 1).role, v1::ROLE_UNSPECIFIED);
+  }
 }
 
-TEST(Token, AThousandHostsThatGuessAreSlowedTogether) {
+TEST(Token, AThousandHostsThatGuessWaitTogether) {
   TokenGuard guard(kToken);
   std::int64_t now_ns = 1'000'000'000;
   for (int host = 0; host < 1000; ++host) {
-    for (int i = 0; i < 5; ++i) {
-      EXPECT_FALSE(guard.Accepts("wrong", "10.0.0." + std::to_string(host), now_ns));
-    }
+    for (int i = 0; i < 5; ++i) guard.Check("wrong", "10.0.0." + std::to_string(host), now_ns);
   }
-  EXPECT_FALSE(guard.Accepts(kToken, "10.0.1.1", now_ns)) << "nobody new: all places are guessers'";
+  EXPECT_TRUE(guard.Check("wrong", "10.0.1.1", now_ns).waits) << "all places are guessers'";
+  EXPECT_EQ(guard.Check(kToken, "10.0.1.1", now_ns).role, v1::ROLE_CONTROL);
   now_ns += 26'000'000'000;  // 5 tries at 0.2 a second, and those of the shared one.
-  EXPECT_TRUE(guard.Accepts(kToken, "10.0.1.1", now_ns));
+  EXPECT_FALSE(guard.Check("wrong", "10.0.1.1", now_ns).waits);
 }
 
 TEST(Token, AClientPresentsTheEnvironmentsTokenOverTcpOnly) {
@@ -142,6 +153,62 @@ TEST_F(TokenTest, OverTcpOnlyTheTokenGivesControl) {
   EXPECT_EQ(right->messages[0].welcome().granted_role(), v1::ROLE_CONTROL);
   const auto admin = SayHello(kToken, v1::ROLE_ADMIN);
   EXPECT_EQ(admin->messages[0].refused().reason(), v1::Refused::REASON_ROLE);
+}
+
+TEST_F(TokenTest, TheViewTokenLetsLookAndNoMore) {
+  ServerOptions options = Options();
+  options.token = kToken;
+  options.view_token = kViewToken;
+  options.insecure_lan = true;
+  StartServer(options);
+  const auto viewer = SayHello(kViewToken, v1::ROLE_VIEW);
+  EXPECT_EQ(viewer->messages[0].welcome().granted_role(), v1::ROLE_VIEW);
+  const auto control = SayHello(kViewToken, v1::ROLE_CONTROL);
+  EXPECT_EQ(control->messages[0].refused().reason(), v1::Refused::REASON_ROLE);
+  EXPECT_NE(control->messages[0].refused().message().find("view_token_file"), std::string::npos);
+}
+
+TEST_F(TokenTest, GuessesHoldNoPlaceThatTheRightTokenNeeds) {
+  ServerOptions options = Options();
+  options.token = kToken;
+  options.sessions.max_sessions = options.sessions.max_sessions_per_user = 3;
+  options.wrong_token_wait_s = 600;  // In place of 2 s: only who needs the place ends the wait.
+  StartServer(options);
+  for (int i = 0; i < 5; ++i) SayHello("wrong", v1::ROLE_VIEW);
+  std::vector<std::unique_ptr<TestClient>> guesses;
+  const auto guess = [&] {
+    guesses.push_back(Connect(1));
+    guesses.back()->Read();
+    v1::Envelope hello = Hello();
+    hello.mutable_hello()->set_token("wrong");
+    guesses.back()->Send(hello);
+    const std::uint64_t before = server_->statistics().denied;
+    EXPECT_TRUE(RunUntil([&] { return server_->statistics().denied > before; }));
+  };
+  for (int i = 0; i < 3; ++i) guess();
+  for (const auto& one : guesses) EXPECT_TRUE(one->messages.empty()) << "no answer yet";
+  guesses[2]->Send(Subscribe());  // Ignored: the answer is still to come.
+  const auto right = SayHello(kToken, v1::ROLE_CONTROL);
+  EXPECT_TRUE(right->messages[0].has_welcome());
+  ASSERT_TRUE(RunUntil([&] { return !guesses[0]->messages.empty(); }));
+  EXPECT_EQ(guesses[0]->messages[0].refused().reason(), v1::Refused::REASON_TOKEN);
+  EXPECT_TRUE(guesses[1]->messages.empty() && guesses[2]->messages.empty());
+}
+
+TEST_F(TokenTest, AGuessIsAnsweredAfterItsWait) {
+  ServerOptions options = Options();
+  options.token = kToken;
+  options.wrong_token_wait_s = 0.05;
+  StartServer(options);
+  std::vector<std::string> answers;
+  for (int i = 0; i < 7; ++i) {
+    const auto wrong = SayHello("wrong", v1::ROLE_VIEW);
+    ASSERT_FALSE(wrong->messages.empty());
+    EXPECT_EQ(wrong->messages[0].refused().reason(), v1::Refused::REASON_TOKEN);
+    answers.push_back(wrong->messages[0].refused().message());
+  }
+  EXPECT_EQ(answers, std::vector<std::string>(7, answers[0]));
+  EXPECT_EQ(server_->statistics().refused, 7u);
 }
 
 TEST_F(TokenTest, AClientWithAnUnusableTokenFileSaysSoAndComesOnceItIsMended) {
