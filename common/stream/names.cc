@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "common/stream/character.h"
 #include "common/stream/device.h"
@@ -92,6 +95,25 @@ std::string RoleNames(std::uint32_t roles) {
     names += (names.empty() ? "" : ", ") + std::string(Name(role));
   }
   return names;
+}
+
+std::string DevicesText(UserInterface interface, std::uint32_t roles) {
+  std::vector<std::string> names;
+  for (std::size_t number = 1; number < kRoles.size(); ++number) {
+    const auto role = static_cast<DeviceRole>(number);
+    if ((roles & RoleBit(role)) == 0) continue;
+    std::string& name = names.emplace_back("the " + std::string(Name(role)));
+    std::replace(name.begin(), name.end(), '_', ' ');
+  }
+  if (interface == UserInterface::kJoystick) {
+    return names.size() == 1 ? "the joystick in " + names.front() : "the joystick";
+  }
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " and " : ", ";
+    list += names[i];
+  }
+  return list;
 }
 
 std::uint32_t LedsOf(DeviceRole role) {
