@@ -6,11 +6,13 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "common/result/result.h"
 #include "daemon/sensor/devices/source.h"
 #include "daemon/sensor/features/rig_features.h"
+#include "daemon/sensor/hands/exposure_clock.h"
 #include "daemon/sensor/hands/refusals.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
@@ -138,6 +140,10 @@ class Hub {
                bool to_device, std::int64_t true_ns, bool feature = false);
   void Flush(Device& device);
   void Refuse(const std::string& what, const std::string& why);
+  /// What is timed by itself: kind of frame, rig, name of the sender, and which part of a body.
+  using Exposed = std::tuple<char, std::string, std::string, int>;
+  hands::ExposureClock::Exposure Expose(const Exposed& what, const hands::FrameTimes& times);
+  void PublishExposures();
   void EndLeases(std::int64_t now_ns);
   void PublishStatus(std::int64_t now_ns);
 
@@ -154,6 +160,7 @@ class Hub {
   TickContent content_;
   std::vector<stream::DeviceState> last_states_;
   hands::Refusals refusals_;
+  std::map<Exposed, hands::ExposureClock> exposures_;
   std::int64_t status_ns_ = 0;
   bool status_due_ = true;
 };
