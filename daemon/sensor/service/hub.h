@@ -134,6 +134,8 @@ class Hub {
   void AddSetupTo(decode::Placement placement, stream::DeviceStatus& status) const;
   std::string BoardNote(const stream::DeviceStatus& status) const;
   std::set<std::string> RigsWithBoards() const;
+  std::size_t AttachedBoards(const std::string& rig) const;
+  void WatchLayouts();
   std::vector<stream::RigSetup> SetupInForce() const;
   void AddToRig(const Device& device, const stream::MotionSample& sample);
   void TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
@@ -157,6 +159,7 @@ class Hub {
   setup::SetupStore store_;
   std::uint64_t published_revision_ = 0;
   std::set<std::string> published_board_rigs_;
+  std::set<std::string> crowded_rigs_;  ///< With more boards than their layout has places.
   TickContent content_;
   std::vector<stream::DeviceState> last_states_;
   hands::Refusals refusals_;
