@@ -26,6 +26,8 @@ struct SetUpOptions {
   double gap_mm = kNoGapMm;
   /// Roles of the hand devices, each once; empty: their present roles.
   std::vector<stream::DeviceRole> body_roles;
+  /// The item mounting was asked for by name: also of remotes in the hands.
+  bool mount_all = false;
   std::optional<double> mass_kg;
   double patience_s = 60;  ///< Timeout of an item that makes no progress.
   double settle_s = 4;     ///< Without a new device in this time, all are there.

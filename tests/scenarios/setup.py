@@ -162,7 +162,8 @@ def accept(rig):
 def ready_rig(program):
     """From nothing to a ready rig with remotes on the wrists; then the acceptance and its replay."""
     with Rig(program, "--jumbled") as rig:
-        code, result, heard = rig.control("setup", "--mass-kg", 70, "--patience", 20)
+        code, result, heard = rig.control("setup", "--worn", "left_hand,right_hand", "--mass-kg", 70,
+                                          "--patience", 20)
         assert code == 0, f"{code}: {json.dumps(result, indent=1)}\n{heard}"
         check_ready(result, heard, ITEMS)
         weigh = next(one for one in result["items"] if one["name"] == "weigh")
