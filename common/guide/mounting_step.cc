@@ -90,6 +90,7 @@ Progress MountingStep::Advance(const Situation& now, const SetUpOptions& options
   progress.feedback = "moves by " + Tenths(moving_mps2) + " m/s2";
   switch (stretches_.phase()) {
     case StillThenSteps::Phase::kStill:
+      progress.gesture = stream::Gesture::kHoldStill;
       progress.prompt = "Put the devices on as shown, then stand still for two seconds.";
       progress.feedback += ", still for " + Tenths(stretches_.still_s(now.now_ns)) + " s";
       for (const auto& device : mounted) {
@@ -100,6 +101,7 @@ Progress MountingStep::Advance(const Situation& now, const SetUpOptions& options
       }
       break;
     case StillThenSteps::Phase::kSteps:
+      progress.gesture = stream::Gesture::kTakeSteps;
       progress.prompt =
           "Now take three steps forward, starting with the left foot, and stand again.";
       break;

@@ -7,6 +7,7 @@
 #include "common/stream/character.h"
 #include "common/stream/device.h"
 #include "common/stream/leg_turn.h"
+#include "common/stream/setup.h"
 #include "common/stream/user_interface.h"
 
 namespace footing::stream {
@@ -35,6 +36,8 @@ constexpr std::array kTurnSources = {"unknown", "hands", "head", "feet", "trunk"
 constexpr std::array kCauseNames = {"unknown", "simulation",   "curve",
                                     "jump",    "straightness", "transition"};
 static_assert(kCauseNames.size() == kFailureCauses.size() + 1, "name every cause");
+constexpr std::array kGestures = {"none",  "switch on",    "hold still", "step off",  "step on",
+                                  "stand", "lean forward", "shake",      "take steps"};
 constexpr std::array kTrialPhaseNames = {"unknown", "ready", "running", "finished", "stopped"};
 
 template <std::size_t N, typename E>
@@ -70,6 +73,7 @@ const char* Name(Gait gait) { return At(kGaitNames, gait); }
 const char* Name(FailureCause cause) { return At(kCauseNames, cause); }
 const char* Name(TrialPhase phase) { return At(kTrialPhaseNames, phase); }
 const char* Name(UserInterface interface) { return At(kInterfaces, interface); }
+const char* Name(Gesture gesture) { return At(kGestures, gesture); }
 const char* Name(TurnSource source) { return At(kTurnSources, source); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
 TurnSource LegTurnSourceNamed(const std::string& name) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -92,6 +93,9 @@ class Hub {
   Result<Measured> ClearMounting(const std::string& serial);
   Result<Measured> SetBoardLayout(stream::BoardLayout layout);
   Result<void> RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget);
+  /// Published with the rig's set-up until the session ends; nothing: no more is asked for.
+  Result<void> ShowPrompt(std::uint64_t session, const std::string& rig,
+                          const std::optional<stream::SetupPrompt>& prompt);
   /// A mounting of a recording, found for this role.
   void TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting);
   void EndSession(std::uint64_t session);
@@ -109,6 +113,11 @@ class Hub {
   struct Lease {
     std::uint64_t session = 0;
     std::int64_t until_ns = 0;
+  };
+
+  struct ShownPrompt {
+    std::uint64_t session = 0;
+    stream::SetupPrompt prompt;
   };
 
   Device* Find(devices::DeviceHandle handle);
@@ -155,7 +164,9 @@ class Hub {
   std::uint32_t last_number_ = 0;
   std::map<std::string, Binding> assigned_;  // By serial; config first, then commands.
   std::map<std::string, Rig> rigs_;
-  std::map<std::uint32_t, Lease> leases_;  // By device.
+  std::map<std::uint32_t, Lease> leases_;       // By device.
+  std::map<std::string, ShownPrompt> prompts_;  // By rig.
+  std::uint64_t last_prompt_ = 0;
   setup::SetupStore store_;
   std::uint64_t published_revision_ = 0;
   std::set<std::string> published_board_rigs_;

@@ -17,6 +17,7 @@ constexpr double kLeastTareWindowS = 0.5;
 constexpr double kMostTareWindowS = 30;
 constexpr std::size_t kMostNameBytes = 64;
 constexpr std::size_t kMostNoteBytes = 1024;
+constexpr std::size_t kMostPrompts = 16;
 
 bool IsOnBody(DeviceRole role) {
   switch (role) {
@@ -86,6 +87,15 @@ std::vector<stream::RigSetup> Hub::SetupInForce() const {
     const bool has_one =
         std::any_of(setup.begin(), setup.end(), [&rig](const auto& one) { return one.rig == rig; });
     if (!has_one) setup.emplace_back().rig = rig;
+  }
+  for (const auto& [rig, shown] : prompts_) {
+    auto one = std::find_if(setup.begin(), setup.end(),
+                            [&name = rig](const auto& other) { return other.rig == name; });
+    if (one == setup.end()) {
+      one = setup.emplace(setup.end());
+      one->rig = rig;
+    }
+    one->prompt = shown.prompt;
   }
   for (stream::RigSetup& one : setup) {
     one.layout.left_geometry = one.layout.right_geometry = config_.plate.geometry;
@@ -215,6 +225,28 @@ Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& i
     store_.SetMoved(device->identity().serial, false);
     device->chain().RestartWatch();
   }
+  return {};
+}
+
+Result<void> Hub::ShowPrompt(std::uint64_t session, const std::string& rig,
+                             const std::optional<stream::SetupPrompt>& prompt) {
+  const std::string& name = rig.empty() ? config_.default_rig : rig;
+  if (const auto checked = CheckRig(name); !checked) {
+    return UsageError("show_prompt: " + checked.error().message);
+  }
+  content_.has_setup = true;
+  if (!prompt) {
+    prompts_.erase(name);
+    return {};
+  }
+  if (prompt->item.size() > kMostNameBytes || prompt->text.size() > kMostNoteBytes) {
+    return UsageError("show_prompt: the item is longer than 64 bytes, or the text than 1024");
+  }
+  if (!prompts_.contains(name) && prompts_.size() >= kMostPrompts) {
+    return Failure("show_prompt: there are too many prompts already");
+  }
+  prompts_[name] = {session, *prompt};
+  prompts_[name].prompt.number = ++last_prompt_;
   return {};
 }
 

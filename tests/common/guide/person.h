@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/guide/set_up.h"
@@ -55,6 +56,7 @@ class Person {
       answers_.clear();
       const Progress progress = set_up.Advance(now);
       Hear(progress.prompt);
+      if (!progress.prompt.empty()) gestures.insert({progress.gesture, progress.role});
       for (const Action& action : progress.actions) Serve(action);
       if (progress.finished) return set_up.results();
     }
@@ -70,6 +72,7 @@ class Person {
   double mounting_deg = 4;  ///< What footingd finds.
   std::vector<stream::RigSetup> setup;
   std::set<std::string> prompts;
+  std::set<std::pair<stream::Gesture, stream::DeviceRole>> gestures;
 
  private:
   void Hear(const std::string& whole) {

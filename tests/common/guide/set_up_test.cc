@@ -218,5 +218,24 @@ TEST(SetUp, NeedsNoBoards) {
   EXPECT_TRUE(Ready(Merged({}, results, person.devices), person.devices, nullptr));
 }
 
+TEST(SetUp, EachPromptSaysWhichGestureItIsAbout) {
+  using stream::DeviceRole;
+  using stream::Gesture;
+  Person person;
+  person.Do({});
+  EXPECT_EQ(person.gestures, (std::set<std::pair<Gesture, DeviceRole>>{
+                                 {Gesture::kUnspecified, DeviceRole::kUnspecified},  // Checks.
+                                 {Gesture::kSwitchOn, DeviceRole::kUnspecified},
+                                 {Gesture::kHoldStill, DeviceRole::kUnspecified},
+                                 {Gesture::kStepOff, DeviceRole::kUnspecified},
+                                 {Gesture::kStepOn, DeviceRole::kLeftBoard},
+                                 {Gesture::kStepOn, DeviceRole::kRightBoard},
+                                 {Gesture::kStand, DeviceRole::kUnspecified},
+                                 {Gesture::kLean, DeviceRole::kUnspecified},
+                                 {Gesture::kShake, DeviceRole::kLeftLeg},
+                                 {Gesture::kShake, DeviceRole::kRightLeg},
+                                 {Gesture::kTakeSteps, DeviceRole::kUnspecified}}));
+}
+
 }  // namespace
 }  // namespace footing::guide
