@@ -49,6 +49,7 @@ std::vector<stream::HandFrame> ToHandFrames(
     const double row_s = found[i] ? camera.RowTime(found[i]->centre_px.y()) : 0;
     const auto row_ns = static_cast<std::int64_t>(std::llround(1e9 * row_s));
     frame.age_ns = std::clamp<std::int64_t>(now_ns - exposed_ns - row_ns, 0, kOldestNs);
+    frame.sent_ns = now_ns;
     frames.push_back(std::move(frame));
   }
   return frames;

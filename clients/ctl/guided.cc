@@ -138,6 +138,38 @@ class PromptPrinter {
   std::string prompt_;
 };
 
+/// Publishes each new prompt with the rig's set-up, for whoever follows it: another screen, or the
+/// device simulator that performs what is asked for. An older footingd that does not know how is
+/// asked once.
+class PublishedPrompts {
+ public:
+  PublishedPrompts(Session& session, std::string rig) : session_(session), rig_(std::move(rig)) {}
+
+  void Show(guide::Item item, const guide::Progress& progress) {
+    if (!taken_ || progress.prompt.empty() || progress.prompt == text_) return;
+    text_ = progress.prompt;
+    v1::Command command;
+    command.mutable_show_prompt()->set_rig(rig_);
+    *command.mutable_show_prompt()->mutable_prompt() = wire::ToProto(stream::SetupPrompt{
+        guide::Name(item), text_.substr(0, kMostBytes), progress.gesture, progress.role});
+    taken_ = session_.Call(std::move(command)).ok();
+  }
+  void End() {
+    if (!taken_ || text_.empty()) return;
+    v1::Command command;
+    command.mutable_show_prompt()->set_rig(rig_);
+    taken_ = session_.Call(std::move(command)).ok();
+  }
+
+ private:
+  static constexpr std::size_t kMostBytes = 1024;
+
+  Session& session_;
+  const std::string rig_;
+  bool taken_ = true;
+  std::string text_;
+};
+
 Result<void> Record(Session& session, const std::string& rig, const stream::SetupItem& item) {
   v1::Command command;
   command.mutable_record_setup()->set_rig(rig);
@@ -182,6 +214,7 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
   recent.SetDevices(session.status());
   session.set_on_tick([&](const v1::Tick& tick) { TakeTick(tick, recent); });
   PromptPrinter printer(prompts);
+  PublishedPrompts published(session, options.rig);
   std::vector<stream::SetupItem> found;
   std::vector<guide::Answer> answers;
   std::int64_t last_ns = session.server_ns();
@@ -200,8 +233,10 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
     now.adapters = Adapters();
     now.answers = std::exchange(answers, {});
     now.enter = !prompts.script && EnterPressed();
+    const guide::Item under_way = set_up.item();
     const guide::Progress progress = set_up.Advance(now);
     printer.Show(progress);
+    published.Show(under_way, progress);
     for (const auto& action : progress.actions) {
       answers.push_back(Do(session, action, options));
     }
@@ -219,6 +254,7 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
     }
     finished = progress.finished;
   }
+  published.End();
   session.set_on_tick({});
   if (!outcome) return outcome.error();
   return found;

@@ -204,20 +204,24 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       ++sent_[index];
       return ScheduleSource(index);
     }
+    const std::int64_t now_ns = clock::MonotonicNs();
     const std::int64_t age_ns =
-        std::max<std::int64_t>(0, clock::MonotonicNs() - start_ns_ - SecondsToNanoseconds(due_s));
+        std::max<std::int64_t>(0, now_ns - start_ns_ - SecondsToNanoseconds(due_s));
     v1::DeviceEnvelope envelope;
     if (feed.hands) {
       stream::HandFrame frame = feed.hands(due_s);
       frame.age_ns = age_ns;
+      frame.sent_ns = now_ns;
       *envelope.mutable_hand_frame() = wire::ToProto(frame);
     } else if (feed.contacts) {
       stream::ContactFrame frame = feed.contacts(due_s);
       frame.age_ns = age_ns;
+      frame.sent_ns = now_ns;
       *envelope.mutable_contact_frame() = wire::ToProto(frame);
     } else {
       stream::ReferenceFrame frame = feed.reference(due_s);
       frame.age_ns = age_ns;
+      frame.sent_ns = now_ns;
       *envelope.mutable_reference_frame() = wire::ToProto(frame);
     }
     link_.Send(envelope);

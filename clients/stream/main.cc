@@ -7,6 +7,7 @@
 #include "clients/stream/live_runner.h"
 #include "clients/stream/plan.h"
 #include "clients/stream/players_command.h"
+#include "clients/stream/rehearse_command.h"
 #include "clients/stream/replay.h"
 #include "clients/stream/samples.h"
 #include "clients/stream/user_command.h"
@@ -23,8 +24,10 @@ namespace {
 
 using namespace footing;  // NOLINT: main is wiring
 
-/// What the io_context is for beside the devices.
-using Beside = std::function<std::unique_ptr<transport::Client>(boost::asio::io_context&)>;
+/// What the io_context is for beside the devices; `end` ends the program.
+using End = std::function<void(const std::string& why)>;
+using Beside =
+    std::function<std::unique_ptr<transport::Client>(boost::asio::io_context&, const End& end)>;
 
 int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
         const Beside& beside = nullptr) {
@@ -39,14 +42,15 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
   timer::Timer limit(io);
   bool came_in_time = true;
   std::unique_ptr<stream_client::Dialer> dialer;
-  const auto eyes = beside ? beside(io) : nullptr;
-  const auto end = [&](const std::string& why) {
+  std::unique_ptr<transport::Client> eyes;
+  const End end = [&](const std::string& why) {
     log::Info(why);
     dialer->Stop(why);
     if (eyes) eyes->Stop();
     signals.cancel();
     limit.cancel();
   };
+  if (beside) eyes = beside(io, end);
   dialer = std::make_unique<stream_client::Dialer>(
       io, stream_client::DialerOptions{*to, common.rate_scale}, std::move(plan).value(),
       [&] { end("the motion has ended"); });
@@ -75,10 +79,31 @@ int RunPlayer(const std::string& simulation, const stream_client::Common& common
   if (!at) return cli::Report(at.error());
   auto planned = stream_client::PlanRunner(common);
   if (!planned) return cli::Report(planned.error());
-  return Run(std::move(planned->plan), common, [&](boost::asio::io_context& io) {
-    return stream_client::WatchSimulation(
-        io, *at, [runner = planned->runner](const v1::Tick& tick) { runner->See(tick); });
+  return Run(std::move(planned->plan), common, [&](boost::asio::io_context& io, const End&) {
+    return stream_client::Watch(
+        io, *at, {"characters", "track"},
+        [runner = planned->runner](const v1::Tick& tick) { runner->See(tick); });
   });
+}
+
+int RunRehearse(const stream_client::RehearseOptions& options,
+                const stream_client::Common& common) {
+  const auto at = transport::AddressOrDefault(options.sensor, "sensor");
+  if (!at) return cli::Report(at.error());
+  auto planned = stream_client::PlanSetupPerson(options.person, common);
+  if (!planned) return cli::Report(planned.error());
+  const auto record = std::make_shared<stream_client::SetupRecord>();
+  const int code =
+      Run(std::move(planned->plan), common, [&](boost::asio::io_context& io, const End& end) {
+        const auto person = std::make_shared<stream_client::SetupPerson>(
+            io, planned->body, options.person.rig, record, [once = options.person.once, end] {
+              if (once) end("the setup has ended");
+            });
+        return stream_client::Watch(io, *at, {"setup"},
+                                    [person](const v1::Tick& tick) { person->See(tick); });
+      });
+  if (code == 0) stream_client::PrintAsked(*record, options.json);
+  return code;
 }
 
 void AddCommon(CLI::App& app, stream_client::Common& common) {
@@ -104,9 +129,9 @@ int RunUser(const stream_client::UserOptions& user, const stream_client::Common&
   if (user.ranges) return Run(std::move(live->plan), common);
   const auto simulation = transport::ParseAddress(user.see);
   if (!simulation) return cli::Report(simulation.error());
-  return Run(std::move(live->plan), common, [&](boost::asio::io_context& io) {
-    return stream_client::WatchSimulation(
-        io, *simulation, [user = live->user](const v1::Tick& tick) { user->See(tick); });
+  return Run(std::move(live->plan), common, [&](boost::asio::io_context& io, const End&) {
+    return stream_client::Watch(io, *simulation, {"characters", "track"},
+                                [user = live->user](const v1::Tick& tick) { user->See(tick); });
   });
 }
 
@@ -125,6 +150,7 @@ constexpr char kExamples[] =
     "  footing-stream insoles --motion clip.bvh --hands move\n"
     "  footing-stream runner &     # the terrain game's two players, see footing-game\n"
     "  footing-stream builder\n"
+    "  footing-stream rehearse     # performs what footing-ctl setup asks for in another terminal\n"
     "  footing-stream replay walk.mcap\n";
 
 }  // namespace
@@ -134,7 +160,7 @@ int main(int argc, char** argv) {
       cli::NewApp("footing-stream",
                   "Simulates devices at the level of raw HID reports, over a socket.", kExamples);
   stream_client::Common common;
-  bool quiet = false;
+  bool quiet = false, replace = false;
   AddCommon(*app, common);
   app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
   app->require_subcommand(1);
@@ -163,11 +189,12 @@ int main(int argc, char** argv) {
   auto* sample = app->add_subcommand(
       "sample", "Write small sample files for the examples of every program, and end");
   sample->add_option("FOLDER", sample_folder, "Folder to write into (default: this one)");
-  bool replace = false;
   sample->add_flag("--force", replace, "Replace files of the same names that have other content");
   stream_client::PlayersOptions players;
   auto* runner = stream_client::AddRunnerCommand(*app, players);
   auto* builder = stream_client::AddBuilderCommand(*app, players);
+  stream_client::RehearseOptions setup_options;
+  auto* rehearse = stream_client::AddRehearseCommand(*app, setup_options);
   std::string recording;
   auto* replay = app->add_subcommand("replay", "The devices of a recording, with its raw reports");
   replay->add_option("FILE", recording, "Recording, MCAP file")->required();
@@ -179,6 +206,7 @@ int main(int argc, char** argv) {
     return written ? 0 : cli::Report(written.error());
   }
   if (*replay) return Run(stream_client::PlanReplay(recording, common), common);
+  if (*rehearse) return RunRehearse(setup_options, common);
   if (*runner) return RunPlayer(players.simulation, common);
   if (*builder) return Run(stream_client::PlanBuilder(players.pits, common), common);
   if (*user) return RunUser(person, common);

@@ -7,20 +7,21 @@
 
 namespace footing::stream_client {
 
-std::unique_ptr<transport::Client> WatchSimulation(boost::asio::io_context& io,
-                                                   const transport::Address& simulation,
-                                                   std::function<void(const v1::Tick&)> see) {
+std::unique_ptr<transport::Client> Watch(boost::asio::io_context& io,
+                                         const transport::Address& server,
+                                         std::vector<std::string> channels,
+                                         std::function<void(const v1::Tick&)> see) {
   transport::ClientOptions options;
-  options.address = simulation;
+  options.address = server;
   options.client_name = "footing-stream";
-  options.channels = {"characters", "track"};
+  options.channels = std::move(channels);
   transport::ClientHandlers handlers;
   handlers.on_tick = std::move(see);
   handlers.on_state = [](transport::LinkState, const std::string& why) {
-    log::Info("watching the simulation: " + why);
+    log::Info("watching the server: " + why);
   };
   handlers.on_notice = [](const v1::Notice& notice) {
-    log::Warning("watching the simulation: " + notice.text());
+    log::Warning("watching the server: " + notice.text());
   };
   auto client = std::make_unique<transport::Client>(io, options, std::move(handlers));
   client->Start();

@@ -3,6 +3,8 @@
 #include <boost/asio/io_context.hpp>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "common/transport/address.h"
 #include "common/transport/client.h"
@@ -10,10 +12,11 @@
 
 namespace footing::stream_client {
 
-/// The eyes of a synthetic user or player: calls `see` with what footing-sim publishes of the
-/// character and its track. Everything runs on the io_context's one thread.
-std::unique_ptr<transport::Client> WatchSimulation(boost::asio::io_context& io,
-                                                   const transport::Address& simulation,
-                                                   std::function<void(const v1::Tick&)> see);
+/// The eyes of a synthetic user, player or person: calls `see` with what the server publishes in
+/// these channels. Everything runs on the io_context's one thread.
+std::unique_ptr<transport::Client> Watch(boost::asio::io_context& io,
+                                         const transport::Address& server,
+                                         std::vector<std::string> channels,
+                                         std::function<void(const v1::Tick&)> see);
 
 }  // namespace footing::stream_client

@@ -78,6 +78,14 @@ double GapM(const stream::BoardPose& left, const stream::BoardPose& right) {
   return widest_m;
 }
 
+std::string ProblemWith(const stream::BoardLayout& layout, std::size_t boards,
+                        const std::string& rig) {
+  if (layout.preset != "single" || boards < 2) return "";
+  return "the layout single is for one board, but rig " + rig + " has " + std::to_string(boards) +
+         ": footing-ctl layout --rig " + rig +
+         " --preset one_foot_each (or side_by_side), or switch the other board off";
+}
+
 std::string Problem(const stream::BoardLayout& layout) {
   static constexpr const char* kPresets[] = {"one_foot_each", "side_by_side", "single", "custom"};
   if (std::find(std::begin(kPresets), std::end(kPresets), layout.preset) == std::end(kPresets)) {

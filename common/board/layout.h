@@ -37,6 +37,11 @@ stream::BoardLayout LayoutOr(const stream::BoardLayout& published);
 /// (stand left, stand right, lean forward) does.
 std::string Problem(const stream::BoardLayout& layout);
 
+/// What is wrong where `boards` boards of `rig` are attached and its layout is this one, and what
+/// to do: "single" puts both into one place, by which every figure would be wrong. Empty: nothing.
+std::string ProblemWith(const stream::BoardLayout& layout, std::size_t boards,
+                        const std::string& rig);
+
 /// Distance between the facing edges of two boards; negative when they overlap. It is the largest
 /// distance that a line along one of their edges can be put between, so of corner to corner it is
 /// less than the straight way.

@@ -98,6 +98,8 @@ Progress LayoutStep::One(const Situation& now, const SetUpOptions& options) {
   const bool left = phase_ == Phase::kLeft;
   progress.prompt = std::string("Stand on the ") + (left ? "left" : "right") +
                     " board alone, with both feet, and keep still.";
+  progress.gesture = stream::Gesture::kStepOn;
+  progress.role = left ? stream::DeviceRole::kLeftBoard : stream::DeviceRole::kRightBoard;
   if (left) progress.picture = LayoutPicture(layout_.preset);
   const Stance stance = Stand(now, options, kStandForS);
   progress.feedback = Loads(stance, true);
@@ -125,6 +127,7 @@ Progress LayoutStep::Both(const Situation& now, const SetUpOptions& options) {
   const Stance stance = Stand(now, options, upright ? kStandForS : kLeanForS);
   progress.feedback = Loads(stance, two_);
   const bool steady = Upright(stance.left) && (!two_ || Upright(stance.right));
+  progress.gesture = upright ? stream::Gesture::kStand : stream::Gesture::kLean;
   if (upright) {
     progress.prompt = two_ ? "Stand upright, one foot on each board, and keep still."
                            : "Stand upright in the middle of the board and keep still.";
@@ -175,6 +178,7 @@ Progress TareStep::Advance(const Situation& now, const SetUpOptions& options) {
   progress.finished = boards.empty();
   if (boards.empty()) return progress;
   progress.prompt = "Step off the boards and leave them empty.";
+  progress.gesture = stream::Gesture::kStepOff;
   for (const Answer& answer : now.answers) {
     if (!asked_ || !answer.key.starts_with("tare ")) continue;
     results_.push_back(Outcome(Item::kTare, answer.key.substr(5), answer.ok, answer.residual,
@@ -214,6 +218,7 @@ Progress WeighStep::Advance(const Situation& now, const SetUpOptions& options) {
   if (boards.empty()) return progress;
   progress.prompt =
       boards.size() > 1 ? "Stand still, one foot on each board." : "Stand still on the board.";
+  progress.gesture = stream::Gesture::kStand;
   const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kWeighForS);
   std::vector<Load> loads;
   for (const auto& board : boards) {

@@ -92,6 +92,7 @@ Progress AdapterStep::Advance(const Situation& now, const SetUpOptions& options)
     progress.finished = true;
     return progress;
   }
+  progress.gesture = stream::Gesture::kSwitchOn;
   progress.prompt = "Plug in a Bluetooth adapter, or switch it on (rfkill unblock bluetooth).";
   progress.feedback = "no adapter in /sys/class/bluetooth";
   return progress;
@@ -99,6 +100,7 @@ Progress AdapterStep::Advance(const Situation& now, const SetUpOptions& options)
 
 Progress PairingStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
+  progress.gesture = stream::Gesture::kSwitchOn;
   progress.prompt =
       "Switch on every device of this rig (pair new ones in another terminal: footing-ctl pair). "
       "Press Enter when all are on.";
@@ -237,6 +239,7 @@ Progress RolesStep::Advance(const Situation& now, const SetUpOptions& options) {
     progress.prompt =
         boards ? "Step off the boards and hold everything still." : "Hold everything still.";
     if (one) progress.prompt.clear();
+    if (!one) progress.gesture = boards ? stream::Gesture::kStepOff : stream::Gesture::kHoldStill;
     if (one || Resting(now, options)) {
       phase_ = Phase::kAsk;
       rest_since_ns_ = now.now_ns - kRestNs;
@@ -247,6 +250,8 @@ Progress RolesStep::Advance(const Situation& now, const SetUpOptions& options) {
     progress = Ask(now, options);
     if (alone_.count(role) == 0) {
       progress.prompt = (IsBoardRole(role) ? "Step on " : "Shake ") + RoleText(role) + " now.";
+      progress.gesture = IsBoardRole(role) ? stream::Gesture::kStepOn : stream::Gesture::kShake;
+      progress.role = role;
     }
   }
   if (phase_ == Phase::kEnd) {

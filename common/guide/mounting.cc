@@ -99,7 +99,12 @@ Mounted MountedAs(stream::DeviceRole role) {
 
 }  // namespace
 
-bool NeedsMounting(stream::DeviceRole role) { return !Wearing(role).empty(); }
+bool NeedsMounting(stream::DeviceRole role) {
+  return CanBeMounted(role) && role != stream::DeviceRole::kLeftHand &&
+         role != stream::DeviceRole::kRightHand;
+}
+
+bool CanBeMounted(stream::DeviceRole role) { return !Wearing(role).empty(); }
 
 std::string Picture(stream::DeviceRole role) { return MountedAs(role).picture; }
 

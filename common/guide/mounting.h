@@ -10,6 +10,9 @@ namespace footing::guide {
 
 /// It is fastened to a limb, so its directions have to be found.
 bool NeedsMounting(stream::DeviceRole role);
+/// Its directions can be found: those of what needs it, and of a remote on a wrist. One that is
+/// held in the hand, buttons up, lies as it should.
+bool CanBeMounted(stream::DeviceRole role);
 /// How a device is mounted, drawn for a terminal: shin outside, head band, wrist. Empty for boards.
 std::string Picture(stream::DeviceRole role);
 /// The same in a sentence.

@@ -14,11 +14,30 @@ std::string Tenths(double value) {
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
 }
 
+bool WasMounted(const stream::DeviceStatus& device, const Situation& now) {
+  for (const auto& rig : *now.setup) {
+    for (const auto& item : rig.items) {
+      const bool is_mounting = item.name == Name(Item::kMounting);
+      if (rig.rig == device.rig && is_mounting && item.serial == device.serial) return true;
+    }
+  }
+  return device.mounted;
+}
+
+bool IsFastened(const stream::DeviceStatus& device, const Situation& now,
+                const SetUpOptions& options) {
+  if (NeedsMounting(device.role)) return true;
+  const auto& named = options.body_roles;
+  return CanBeMounted(device.role) &&
+         (options.mount_all || WasMounted(device, now) ||
+          std::find(named.begin(), named.end(), device.role) != named.end());
+}
+
 /// Devices that are fastened to somebody; an editor's lies on the table.
 std::vector<stream::DeviceStatus> Fastened(const Situation& now, const SetUpOptions& options) {
   std::vector<stream::DeviceStatus> fastened;
   for (const auto& device : now.recent->BodyDevices(options.rig)) {
-    if (NeedsMounting(device.role)) fastened.push_back(device);
+    if (IsFastened(device, now, options)) fastened.push_back(device);
   }
   return fastened;
 }
@@ -71,6 +90,7 @@ Progress MountingStep::Advance(const Situation& now, const SetUpOptions& options
   progress.feedback = "moves by " + Tenths(moving_mps2) + " m/s2";
   switch (stretches_.phase()) {
     case StillThenSteps::Phase::kStill:
+      progress.gesture = stream::Gesture::kHoldStill;
       progress.prompt = "Put the devices on as shown, then stand still for two seconds.";
       progress.feedback += ", still for " + Tenths(stretches_.still_s(now.now_ns)) + " s";
       for (const auto& device : mounted) {
@@ -81,6 +101,7 @@ Progress MountingStep::Advance(const Situation& now, const SetUpOptions& options
       }
       break;
     case StillThenSteps::Phase::kSteps:
+      progress.gesture = stream::Gesture::kTakeSteps;
       progress.prompt =
           "Now take three steps forward, starting with the left foot, and stand again.";
       break;

@@ -8,7 +8,8 @@
 namespace footing::guide {
 
 /// Finds the rotation of every mounted device by two seconds still and three steps. A rig without
-/// one finishes at once, without a result.
+/// one finishes at once, without a result. A remote of a hand is taken as held, which needs no
+/// mounting, unless its role was named as worn, it was mounted before, or all are asked for.
 class MountingStep {
  public:
   Progress Advance(const Situation& now, const SetUpOptions& options);

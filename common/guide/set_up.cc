@@ -32,6 +32,7 @@ SetUp::Step SetUp::StepOf(Item item) {
 
 SetUp::SetUp(SetUpOptions options, std::vector<Item> items)
     : options_(std::move(options)), items_(std::move(items)) {
+  options_.mount_all |= std::find(items_.begin(), items_.end(), Item::kMounting) != items_.end();
   if (items_.empty()) items_ = AllItems();
   step_ = StepOf(items_.front());
 }

@@ -104,7 +104,9 @@ bool Ready(const std::vector<stream::SetupItem>& items,
     need(Item::kPairing, device.serial);
     need(Item::kRoles, device.serial);
     if (IsBalanceBoard(device)) need(Item::kTare, device.serial);
-    if (NeedsMounting(device.role)) need(Item::kMounting, device.serial);
+    const bool was_mounted =
+        CanBeMounted(device.role) && Find(items, Item::kMounting, device.serial) != nullptr;
+    if (was_mounted || NeedsMounting(device.role)) need(Item::kMounting, device.serial);
     need(Item::kChecks, device.serial);
   }
   if (boards) {

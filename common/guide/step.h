@@ -26,6 +26,8 @@ struct SetUpOptions {
   double gap_mm = kNoGapMm;
   /// Roles of the hand devices, each once; empty: their present roles.
   std::vector<stream::DeviceRole> body_roles;
+  /// The item mounting was asked for by name: also of remotes in the hands.
+  bool mount_all = false;
   std::optional<double> mass_kg;
   double patience_s = 60;  ///< Timeout of an item that makes no progress.
   double settle_s = 4;     ///< Without a new device in this time, all are there.
@@ -76,8 +78,11 @@ struct Situation {
 
 /// What an item says in that instant.
 struct Progress {
-  std::string prompt;               ///< To the person; the same until something else is asked.
-  std::string picture;              ///< Goes with the prompt; may be empty.
+  std::string prompt;   ///< To the person; the same until something else is asked.
+  std::string picture;  ///< Goes with the prompt; may be empty.
+  /// The same as a number, for who performs it without reading; of which device, if of one.
+  stream::Gesture gesture = stream::Gesture::kUnspecified;
+  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
   std::string feedback;             ///< What is seen at the moment; changes all the time.
   std::optional<MarksState> marks;  ///< Of a camera's calibration.
   std::vector<Action> actions;

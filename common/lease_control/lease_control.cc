@@ -26,6 +26,8 @@ const char* Guarded(const v1::Command& command) {
       return "set_board_layout";
     case v1::Command::kRecordSetup:
       return "record_setup";
+    case v1::Command::kShowPrompt:
+      return "show_prompt";
     case v1::Command::kPutBack:
       return "put_back";
     case v1::Command::kPush:

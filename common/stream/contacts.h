@@ -25,6 +25,7 @@ struct ContactFrame {
   ContactBody body = ContactBody::kUnspecified;
   std::vector<ContactCell> cells;
   bool simulated = false;
+  std::int64_t sent_ns = 0;  ///< By the monotonic clock of footingd's host; 0: not known.
 };
 
 /// The same as footingd publishes it.

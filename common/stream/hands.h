@@ -59,7 +59,8 @@ struct TrackerPose {
 struct HandFrame {
   std::string tracker;
   std::string rig;
-  std::int64_t age_ns = 0;  ///< Since the exposure, when it was sent.
+  std::int64_t age_ns = 0;   ///< Since the exposure, when it was sent.
+  std::int64_t sent_ns = 0;  ///< By the monotonic clock of footingd's host; 0: not known.
   std::vector<TrackedPoint> points;
   bool simulated = false;
   /// By which the points are in W; nothing: the tracker has no frame of its own. The identity: it
@@ -74,6 +75,7 @@ struct ReferenceFrame {
   std::vector<int> parents;                  ///< Of each joint; -1 for the root.
   std::vector<Eigen::Vector3d> positions_m;  ///< Of each joint, in W.
   Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
+  std::int64_t sent_ns = 0;  ///< As a HandFrame's.
 };
 
 /// A tracked point as footingd publishes it.

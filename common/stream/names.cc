@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "common/stream/character.h"
 #include "common/stream/device.h"
 #include "common/stream/leg_turn.h"
+#include "common/stream/setup.h"
 #include "common/stream/user_interface.h"
 
 namespace footing::stream {
@@ -32,6 +36,8 @@ constexpr std::array kTurnSources = {"unknown", "hands", "head", "feet", "trunk"
 constexpr std::array kCauseNames = {"unknown", "simulation",   "curve",
                                     "jump",    "straightness", "transition"};
 static_assert(kCauseNames.size() == kFailureCauses.size() + 1, "name every cause");
+constexpr std::array kGestures = {"none",  "switch on",    "hold still", "step off",  "step on",
+                                  "stand", "lean forward", "shake",      "take steps"};
 constexpr std::array kTrialPhaseNames = {"unknown", "ready", "running", "finished", "stopped"};
 
 template <std::size_t N, typename E>
@@ -67,6 +73,7 @@ const char* Name(Gait gait) { return At(kGaitNames, gait); }
 const char* Name(FailureCause cause) { return At(kCauseNames, cause); }
 const char* Name(TrialPhase phase) { return At(kTrialPhaseNames, phase); }
 const char* Name(UserInterface interface) { return At(kInterfaces, interface); }
+const char* Name(Gesture gesture) { return At(kGestures, gesture); }
 const char* Name(TurnSource source) { return At(kTurnSources, source); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
 TurnSource LegTurnSourceNamed(const std::string& name) {
@@ -92,6 +99,25 @@ std::string RoleNames(std::uint32_t roles) {
     names += (names.empty() ? "" : ", ") + std::string(Name(role));
   }
   return names;
+}
+
+std::string DevicesText(UserInterface interface, std::uint32_t roles) {
+  std::vector<std::string> names;
+  for (std::size_t number = 1; number < kRoles.size(); ++number) {
+    const auto role = static_cast<DeviceRole>(number);
+    if ((roles & RoleBit(role)) == 0) continue;
+    std::string& name = names.emplace_back("the " + std::string(Name(role)));
+    std::replace(name.begin(), name.end(), '_', ' ');
+  }
+  if (interface == UserInterface::kJoystick) {
+    return names.size() == 1 ? "the joystick in " + names.front() : "the joystick";
+  }
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " and " : ", ";
+    list += names[i];
+  }
+  return list;
 }
 
 std::uint32_t LedsOf(DeviceRole role) {

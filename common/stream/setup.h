@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/stream/device.h"
+
 namespace footing::stream {
 
 /// Where a board lies in the world frame W (x forward, y left, z up).
@@ -57,11 +59,37 @@ struct DeviceMounting {
   double residual_rad = 0;
 };
 
+/// What the guided set-up asks the person for.
+enum class Gesture {
+  kUnspecified = 0,
+  kSwitchOn = 1,   ///< Every device.
+  kHoldStill = 2,  ///< Everything.
+  kStepOff = 3,    ///< Off the boards; everything still.
+  kStepOn = 4,     ///< On the board of the role alone.
+  kStand = 5,      ///< Upright on all boards.
+  kLean = 6,       ///< Forward from there.
+  kShake = 7,      ///< The device of the role.
+  kTakeSteps = 8   ///< Three, the left foot first, and stand again.
+};
+
+/// "switch on", "hold still", ..., for a log or a table.
+const char* Name(Gesture gesture);
+
+/// What a guided set-up asks for at present.
+struct SetupPrompt {
+  std::string item;
+  std::string text;
+  Gesture gesture = Gesture::kUnspecified;
+  DeviceRole role = DeviceRole::kUnspecified;
+  std::uint64_t number = 0;  ///< Of the prompts so far.
+};
+
 struct RigSetup {
   std::string rig;
   BoardLayout layout;
   std::vector<SetupItem> items;
   std::vector<DeviceMounting> mountings;
+  std::optional<SetupPrompt> prompt = std::nullopt;
 };
 
 }  // namespace footing::stream

@@ -99,7 +99,9 @@ struct InterfaceState {
   bool load_valid = false;
   double left_share = 0.5;  ///< Of the load on both boards, 0 to 1.
   TurnState turn = {};
-  std::uint32_t missing_roles = 0;    ///< Bit n: a device with the role of number n is missing.
+  /// Bit n: a device with the role of number n is missing. A joystick is missing in the hand that
+  /// has it, and in both while it was not seen in either.
+  std::uint32_t missing_roles = 0;
   std::uint32_t unmounted_roles = 0;  ///< Likewise: worn without a mounting, which it needs.
   double view_roll_rad = 0;  ///< By which the picture follows the head, clockwise positive.
 };
@@ -108,5 +110,8 @@ struct InterfaceState {
 constexpr std::uint32_t RoleBit(DeviceRole role) { return 1u << static_cast<unsigned>(role); }
 /// The names of roles by their bits: "left_hand, head".
 std::string RoleNames(std::uint32_t roles);
+/// The devices of an interface by the bits of their roles, in words for who uses them: "the left
+/// hand and the head", "the left board", "the joystick in the left hand".
+std::string DevicesText(UserInterface interface, std::uint32_t roles);
 
 }  // namespace footing::stream

@@ -16,6 +16,7 @@ void Fields(Way way, const stream::ContactFrame&) {
   FOOTING_FIELD(source);
   FOOTING_FIELD(rig);
   FOOTING_FIELD(age_ns);
+  FOOTING_FIELD(sent_ns);
   FOOTING_ENUM(ContactBody, body);
   if constexpr (Way::kOut) {
     for (const auto& cell : way.value.cells) *way.message.add_cells() = ToProto(cell);

@@ -58,6 +58,7 @@ void Fields(Way way, const stream::HandFrame&) {
   FOOTING_FIELD(tracker);
   FOOTING_FIELD(rig);
   FOOTING_FIELD(age_ns);
+  FOOTING_FIELD(sent_ns);
   if constexpr (Way::kOut) {
     for (const auto& point : way.value.points) *way.message.add_points() = ToProto(point);
   } else {
@@ -78,6 +79,7 @@ v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value) {
   v1::ReferenceFrame message;
   message.set_rig(Utf8(value.rig));
   message.set_age_ns(value.age_ns);
+  message.set_sent_ns(value.sent_ns);
   for (const int parent : value.parents) message.add_parents(parent);
   for (const Eigen::Vector3d& position : value.positions_m) {
     for (int i = 0; i < 3; ++i) message.add_position_m(static_cast<float>(Finite(position[i])));
@@ -90,6 +92,7 @@ stream::ReferenceFrame FromProto(const v1::ReferenceFrame& message) {
   stream::ReferenceFrame value;
   value.rig = message.rig();
   value.age_ns = message.age_ns();
+  value.sent_ns = message.sent_ns();
   value.parents.assign(message.parents().begin(), message.parents().end());
   for (int i = 0; i < message.position_m_size(); i += 3) {
     value.positions_m.push_back(Triple(message.position_m(), i));

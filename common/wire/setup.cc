@@ -53,11 +53,22 @@ void Fields(Way way, const stream::DeviceMounting&) {
 FOOTING_BOTH_WAYS(DeviceMounting)
 
 template <typename Way>
+void Fields(Way way, const stream::SetupPrompt&) {
+  FOOTING_FIELD(item);
+  FOOTING_FIELD(text);
+  FOOTING_ENUM(Gesture, gesture);
+  FOOTING_ENUM(DeviceRole, role);
+  FOOTING_FIELD(number);
+}
+FOOTING_BOTH_WAYS(SetupPrompt)
+
+template <typename Way>
 void Fields(Way way, const stream::RigSetup&) {
   FOOTING_FIELD(rig);
   FOOTING_MESSAGE(layout);
   FOOTING_REPEATED(items);
   FOOTING_REPEATED(mountings);
+  FOOTING_OPTIONAL(prompt);
 }
 FOOTING_BOTH_WAYS(RigSetup)
 

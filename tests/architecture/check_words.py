@@ -27,7 +27,7 @@ RULES = [  # (words, what to write)
     (r"made[ -](?:\w+ )?(?:users?|person|persons|people|signals?|motions?|movements?|walks?|devices?|boards?)",
      "synthetic, simulated"),
     (r"stand-ins?|stands? in for|standing in for", "simulated device, device simulator"),
-    (r"rehears\w*", "simulation run, replay"),
+    (r"rehears(?!e\b)\w*", "simulation run, replay"),  # footing-stream rehearse is the name of a command.
     (r"room|rooms", "space, workspace, buffer"),
     (r"shelf|shelves|book|books", "store, record"),
     (r"obey|obeys|obeyed|judge|judges|judged|judging", "follow, accept; reject, score, check"),
@@ -44,9 +44,9 @@ PAGE_RULES = [
 ]
 LONGEST_SENTENCE = 35
 NAMES = re.compile(
-    r"(?:(?<![a-z])(?:tell|told|telling|tellings|anew|carried|rehears\w*|room|shelf|shelves|book|talk|voice"
+    r"(?:(?<![a-z])(?:tell|told|telling|tellings|anew|carried|rehears(?!e(?![a-z]))\w*|room|shelf|shelves|book|talk|voice"
     r"|farewell|wishes|worn|obey|judge)(?![a-z])"
-    r"|(?:Tell|Told|Telling|Tellings|Anew|Carried|Rehears[a-z]*|Room|Shelf|Book|Talk|Voice|Farewell"
+    r"|(?:Tell|Told|Telling|Tellings|Anew|Carried|Rehears(?!e(?![a-z]))[a-z]*|Room|Shelf|Book|Talk|Voice|Farewell"
     r"|Wishes|Worn|Made|StandIn|Obey|Judge|Words)(?![a-z]))")
 STRING_OR_COMMENT = re.compile(
     r'(?P<raw>R"(?P<mark>[^(\s]*)\((?P<body>.*?)\)(?P=mark)")'

@@ -81,7 +81,7 @@ class Rig(harness.Stage):
     def __enter__(self):
         super().__enter__()
         self.start_footingd()
-        self.person = Person(self, self.program, *self.words)
+        self.person = Person(self, self.program, *self.words) if self.program else None
         return self
 
     def start_footingd(self):
@@ -118,7 +118,7 @@ class Rig(harness.Stage):
         heard = ""
         for line in process.stderr:
             heard += line
-            if line.startswith("PROMPT: "):
+            if self.person and line.startswith("PROMPT: "):
                 self.person.follow(line.removeprefix("PROMPT: "))
         out = process.stdout.read()
         code = process.wait()
@@ -162,7 +162,8 @@ def accept(rig):
 def ready_rig(program):
     """From nothing to a ready rig with remotes on the wrists; then the acceptance and its replay."""
     with Rig(program, "--jumbled") as rig:
-        code, result, heard = rig.control("setup", "--mass-kg", 70, "--patience", 20)
+        code, result, heard = rig.control("setup", "--worn", "left_hand,right_hand", "--mass-kg", 70,
+                                          "--patience", 20)
         assert code == 0, f"{code}: {json.dumps(result, indent=1)}\n{heard}"
         check_ready(result, heard, ITEMS)
         weigh = next(one for one in result["items"] if one["name"] == "weigh")
@@ -188,6 +189,30 @@ def ready_rig(program):
         assert len(items) == len(result["items"]) and all(one["passed"] for one in items), status
         assert all(device["tared"] or device["mounted"] for device in rig.list()), rig.list()
         print("restart:", len(items), "items kept")
+
+
+def rehearse(_):
+    """footing-stream performs what the setup asks for: held remotes and boards, then remotes on the shins."""
+    held = [item for item in ITEMS if item != "mounting"]
+    shins = ["adapter", "pairing", "roles", "mounting", "checks"]
+    for items, person, setup in (
+            (held, ("--jumbled",), ("--mass-kg", 70)),
+            (shins, ("--interface", "leg"), ("--worn", "left_leg,right_leg"))):
+        with Rig(None) as rig:
+            rehearsal = rig.start("footing-stream", "-q", "rehearse", "--once", "--json", "--to", rig.devices,
+                                  "--watch", rig.sensor, *person)
+            code, result, heard = rig.control("setup", "--patience", 20, *setup)
+            assert code == 0, f"{code}: {json.dumps(result, indent=1)}\n{heard}"
+            check_ready(result, heard, items)
+            # Remotes in the hands are held as they should be: nothing is to be measured by steps.
+            assert ("three steps" in heard) == ("mounting" in items), heard
+            assert rehearsal.wait(harness.PATIENCE_S) == 0
+            summary = json.loads((rig.folder / "footing-stream.log").read_text().splitlines()[-1])
+            prompts = re.findall("^PROMPT: (.*)", heard, re.MULTILINE)
+            assert [row["prompt"] for row in summary["rows"]] == prompts, (summary, heard)
+            idle = [row["item"] for row in summary["rows"] if not row["performed"]]
+            assert summary["setups"] == 1 and idle == ["checks"], summary
+            print("performed:", [f"{row['gesture']} {row['role']}" for row in summary["rows"]])
 
 
 def slipped_shin(program):

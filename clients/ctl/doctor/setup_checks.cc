@@ -65,6 +65,25 @@ std::vector<Symptom> NoLayout(const Facts& facts) {
   return found;
 }
 
+std::vector<Symptom> SingleOfTwo(const Facts& facts) {
+  std::vector<Symptom> found;
+  for (const stream::RigSetup& rig : facts.setup) {
+    const auto boards = std::count_if(facts.devices.begin(), facts.devices.end(),
+                                      [&rig](const DeviceStatus& device) {
+                                        return device.kind == DeviceKind::kBalanceBoard &&
+                                               IsThere(device) && device.rig == rig.rig;
+                                      });
+    if (rig.layout.preset != "single" || boards < 2) continue;
+    found.push_back({Severity::kError,
+                     "the layout single is for one board, but " + std::to_string(boards) +
+                         " are attached: forces and poses would be wrong",
+                     rig.rig,
+                     "footing-ctl layout --rig " + rig.rig +
+                         " --preset one_foot_each --check, or switch the other board off"});
+  }
+  return found;
+}
+
 std::vector<Symptom> Moved(const Facts& facts) {
   std::vector<Symptom> found;
   for (const DeviceStatus& device : facts.devices) {
@@ -101,9 +120,10 @@ std::vector<Symptom> NotMounted(const Facts& facts) {
 }  // namespace
 
 std::vector<Check> SetupChecks() {
-  return {{"setup_stale", Stale},          {"setup_failed", Failed}, {"board_not_tared", NotTared},
-          {"layout_missing", NoLayout},    {"board_moved", Moved},   {"mounting_slipped", Slipped},
-          {"mounting_missing", NotMounted}};
+  return {{"setup_stale", Stale},         {"setup_failed", Failed},
+          {"board_not_tared", NotTared},  {"layout_missing", NoLayout},
+          {"layout_single", SingleOfTwo}, {"board_moved", Moved},
+          {"mounting_slipped", Slipped},  {"mounting_missing", NotMounted}};
 }
 
 }  // namespace footing::ctl::doctor

@@ -41,6 +41,7 @@ Observation Observe(const Skeleton& skeleton, const Eigen::Isometry3d& X_WK) {
 stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_ns) {
   stream::HandFrame frame;
   frame.tracker = "skeleton";
+  frame.sent_ns = now_ns;
   frame.age_ns =
       std::clamp<std::int64_t>(now_ns - observation.exposed_ns, 0, stream::kOldestPointNs);
   frame.tracker_pose = stream::TrackerPose{observation.X_WK.translation(),

@@ -224,7 +224,9 @@ class TrialRun {
     events_.End();
     if (outcome == records::kDeviceLost) {
       fields["device"] = stream::RoleNames(lost_roles_);
-      context_.console.Print("Lost: " + stream::RoleNames(lost_roles_) + ".");
+      const auto interface = stream::UserInterfaceNamed(phase_.interface);
+      context_.console.Print("No signal from " + stream::DevicesText(interface, lost_roles_) +
+                             ". Press a button of it; if no light comes on, change its batteries.");
     }
     if (recorder_->CatchUp(context_.console, servers_.frame().host_ns) == Waited::kInterrupted) {
       return Interrupted();

@@ -67,6 +67,9 @@ std::string ActivityText(const stream::InterfaceState& state) {
 }
 
 std::string ProblemText(const stream::InterfaceState& state) {
+  if (state.missing_roles != 0 && state.interface == UserInterface::kJoystick) {
+    return "missing: " + stream::DevicesText(state.interface, state.missing_roles);
+  }
   if (state.missing_roles != 0) return "missing: " + RolesText(state.missing_roles);
   if (state.unmounted_roles == 0) return "";
   return "no mounting: " + RolesText(state.unmounted_roles) + " (footing-ctl setup)";

@@ -1,43 +1,11 @@
 #include "clients/view/scene/lost_text.h"
 
-#include <vector>
-
 #include "common/stream/user_interface.h"
 
 namespace footing::scene {
 namespace {
 
-using stream::DeviceRole;
 using stream::UserInterface;
-
-std::string NameOf(DeviceRole role) {
-  std::string name = stream::Name(role);
-  for (char& letter : name) {
-    if (letter == '_') letter = ' ';
-  }
-  return name;
-}
-
-/// "the left hand, the right hand and the head".
-std::string ListOf(std::uint32_t roles) {
-  std::vector<std::string> names;
-  for (unsigned number = 1; number <= static_cast<unsigned>(DeviceRole::kTrunk); ++number) {
-    const auto role = static_cast<DeviceRole>(number);
-    if ((roles & stream::RoleBit(role)) != 0) names.push_back("the " + NameOf(role));
-  }
-  std::string list;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) list += i + 1 == names.size() ? " and " : ", ";
-    list += names[i];
-  }
-  return list;
-}
-
-std::string DevicesOf(const stream::InterfaceState& state) {
-  // The stick may be on either hand's remote.
-  if (state.interface == UserInterface::kJoystick) return "the joystick";
-  return ListOf(state.missing_roles);
-}
 
 std::string AdviceFor(UserInterface interface) {
   const std::string which = interface == UserInterface::kBoards ? "board" : "controller";
@@ -64,7 +32,7 @@ std::optional<LostSignal> LostSignalOf(const CharacterPose& pose) {
         "check the cable to it. The character continues by itself.";
     return lost;
   }
-  lost.what = "No signal from " + DevicesOf(state);
+  lost.what = "No signal from " + stream::DevicesText(state.interface, state.missing_roles);
   lost.advice = AdviceFor(state.interface);
   return lost;
 }

@@ -1,5 +1,6 @@
 #include "daemon/sensor/service/commands.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -9,7 +10,7 @@
 namespace footing::sensor {
 namespace {
 
-v1::CommandResult CarryOutSetup(Hub& hub, const v1::Command& command) {
+v1::CommandResult CarryOutSetup(Hub& hub, std::uint64_t session, const v1::Command& command) {
   if (command.has_tare()) {
     const v1::Tare& tare = command.tare();
     return AnswerMeasured(command, hub.Tare(tare.serial(), tare.window_s(), tare.clear()));
@@ -24,6 +25,13 @@ v1::CommandResult CarryOutSetup(Hub& hub, const v1::Command& command) {
   if (command.has_set_board_layout()) {
     return AnswerMeasured(command,
                           hub.SetBoardLayout(wire::FromProto(command.set_board_layout().layout())));
+  }
+  if (command.has_show_prompt()) {
+    const v1::ShowPrompt& show = command.show_prompt();
+    return Answer(command,
+                  hub.ShowPrompt(session, show.rig(),
+                                 show.has_prompt() ? std::optional(wire::FromProto(show.prompt()))
+                                                   : std::nullopt));
   }
   const v1::RecordSetup& record = command.record_setup();
   return Answer(command,
@@ -77,7 +85,8 @@ v1::CommandResult CarryOutAllowed(Hub& hub, const Config& config, std::uint64_t 
     case v1::Command::kSolveMounting:
     case v1::Command::kSetBoardLayout:
     case v1::Command::kRecordSetup:
-      return CarryOutSetup(hub, command);
+    case v1::Command::kShowPrompt:
+      return CarryOutSetup(hub, session, command);
     case v1::Command::kTakeLease:
     case v1::Command::kReleaseLease:
     case v1::Command::kListSessions:  // The server answers these two itself.

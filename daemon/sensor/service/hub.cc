@@ -163,6 +163,7 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   WatchSetup();
   for (const std::string& line : refusals_.Due(now_ns)) ports_.log({line, "", true});
   PublishStatus(now_ns);
+  PublishExposures();
   return std::exchange(content_, {});
 }
 

@@ -4,13 +4,16 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "common/result/result.h"
 #include "daemon/sensor/devices/source.h"
 #include "daemon/sensor/features/rig_features.h"
+#include "daemon/sensor/hands/exposure_clock.h"
 #include "daemon/sensor/hands/refusals.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
@@ -90,6 +93,9 @@ class Hub {
   Result<Measured> ClearMounting(const std::string& serial);
   Result<Measured> SetBoardLayout(stream::BoardLayout layout);
   Result<void> RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget);
+  /// Published with the rig's set-up until the session ends; nothing: no more is asked for.
+  Result<void> ShowPrompt(std::uint64_t session, const std::string& rig,
+                          const std::optional<stream::SetupPrompt>& prompt);
   /// A mounting of a recording, found for this role.
   void TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting);
   void EndSession(std::uint64_t session);
@@ -107,6 +113,11 @@ class Hub {
   struct Lease {
     std::uint64_t session = 0;
     std::int64_t until_ns = 0;
+  };
+
+  struct ShownPrompt {
+    std::uint64_t session = 0;
+    stream::SetupPrompt prompt;
   };
 
   Device* Find(devices::DeviceHandle handle);
@@ -132,12 +143,18 @@ class Hub {
   void AddSetupTo(decode::Placement placement, stream::DeviceStatus& status) const;
   std::string BoardNote(const stream::DeviceStatus& status) const;
   std::set<std::string> RigsWithBoards() const;
+  std::size_t AttachedBoards(const std::string& rig) const;
+  void WatchLayouts();
   std::vector<stream::RigSetup> SetupInForce() const;
   void AddToRig(const Device& device, const stream::MotionSample& sample);
   void TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
                bool to_device, std::int64_t true_ns, bool feature = false);
   void Flush(Device& device);
   void Refuse(const std::string& what, const std::string& why);
+  /// What is timed by itself: kind of frame, rig, name of the sender, and which part of a body.
+  using Exposed = std::tuple<char, std::string, std::string, int>;
+  hands::ExposureClock::Exposure Expose(const Exposed& what, const hands::FrameTimes& times);
+  void PublishExposures();
   void EndLeases(std::int64_t now_ns);
   void PublishStatus(std::int64_t now_ns);
 
@@ -147,13 +164,17 @@ class Hub {
   std::uint32_t last_number_ = 0;
   std::map<std::string, Binding> assigned_;  // By serial; config first, then commands.
   std::map<std::string, Rig> rigs_;
-  std::map<std::uint32_t, Lease> leases_;  // By device.
+  std::map<std::uint32_t, Lease> leases_;       // By device.
+  std::map<std::string, ShownPrompt> prompts_;  // By rig.
+  std::uint64_t last_prompt_ = 0;
   setup::SetupStore store_;
   std::uint64_t published_revision_ = 0;
   std::set<std::string> published_board_rigs_;
+  std::set<std::string> crowded_rigs_;  ///< With more boards than their layout has places.
   TickContent content_;
   std::vector<stream::DeviceState> last_states_;
   hands::Refusals refusals_;
+  std::map<Exposed, hands::ExposureClock> exposures_;
   std::int64_t status_ns_ = 0;
   bool status_due_ = true;
 };

@@ -87,6 +87,8 @@ Result<void> Hub::RequestDeviceStatus(std::uint32_t device) {
 }
 
 void Hub::EndSession(std::uint64_t session) {
+  const auto is_its = [session](const auto& one) { return one.second.session == session; };
+  if (std::erase_if(prompts_, is_its) > 0) content_.has_setup = true;
   for (auto it = leases_.begin(); it != leases_.end();) {
     if (it->second.session != session) {
       ++it;

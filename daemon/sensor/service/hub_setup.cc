@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/board/layout.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
 #include "daemon/sensor/service/hub.h"
@@ -18,6 +17,7 @@ constexpr double kLeastTareWindowS = 0.5;
 constexpr double kMostTareWindowS = 30;
 constexpr std::size_t kMostNameBytes = 64;
 constexpr std::size_t kMostNoteBytes = 1024;
+constexpr std::size_t kMostPrompts = 16;
 
 bool IsOnBody(DeviceRole role) {
   switch (role) {
@@ -79,14 +79,6 @@ void Hub::ApplySetupToAll() {
   status_due_ = true;
 }
 
-std::set<std::string> Hub::RigsWithBoards() const {
-  std::set<std::string> rigs;
-  for (const auto& device : devices_) {
-    if (device->placement() == Placement::kUnderFeet) rigs.insert(device->binding().rig);
-  }
-  return rigs;
-}
-
 /// The set-up of every rig that has one or a board, with the geometry by which its boards' samples
 /// are computed.
 std::vector<stream::RigSetup> Hub::SetupInForce() const {
@@ -96,6 +88,15 @@ std::vector<stream::RigSetup> Hub::SetupInForce() const {
         std::any_of(setup.begin(), setup.end(), [&rig](const auto& one) { return one.rig == rig; });
     if (!has_one) setup.emplace_back().rig = rig;
   }
+  for (const auto& [rig, shown] : prompts_) {
+    auto one = std::find_if(setup.begin(), setup.end(),
+                            [&name = rig](const auto& other) { return other.rig == name; });
+    if (one == setup.end()) {
+      one = setup.emplace(setup.end());
+      one->rig = rig;
+    }
+    one->prompt = shown.prompt;
+  }
   for (stream::RigSetup& one : setup) {
     one.layout.left_geometry = one.layout.right_geometry = config_.plate.geometry;
   }
@@ -104,6 +105,7 @@ std::vector<stream::RigSetup> Hub::SetupInForce() const {
 
 /// Alarms that the devices' own watches raise; they are stored until that part is done again.
 void Hub::WatchSetup() {
+  WatchLayouts();
   for (const auto& device : devices_) {
     const std::string& serial = device->identity().serial;
     const Binding& binding = device->binding();
@@ -136,19 +138,6 @@ void Hub::AddSetupTo(Placement placement, stream::DeviceStatus& status) const {
   }
   const auto stored = store_.MountingOf(status.serial, ToText({status.rig, status.role}));
   status.slipped = stored && stored->slipped;
-}
-
-/// A board that should be one of two is alone; empty when all is well.
-std::string Hub::BoardNote(const stream::DeviceStatus& status) const {
-  if (status.state == stream::DeviceState::kLost) return "";
-  if (store_.LayoutOf(status.rig).preset == "single") return "";
-  const bool alone = std::none_of(devices_.begin(), devices_.end(), [&status](const auto& other) {
-    return other->number() != status.device && other->attached() &&
-           other->placement() == Placement::kUnderFeet && other->binding().rig == status.rig;
-  });
-  return alone ? "one board alone: weight beside it is not measured; switch the other on, or say "
-                 "that there is none: footing-ctl layout --preset single"
-               : "";
 }
 
 Result<Device*> Hub::Attached(const std::string& serial) {
@@ -216,26 +205,6 @@ Result<Hub::Measured> Hub::ClearMounting(const std::string& serial) {
   return Measured{0, "deg", "the mounting of " + serial + " is forgotten"};
 }
 
-Result<Hub::Measured> Hub::SetBoardLayout(stream::BoardLayout layout) {
-  if (layout.rig.empty()) layout.rig = config_.default_rig;
-  if (layout.rig.size() > kMostNameBytes) return UsageError("layout: the rig's name is too long");
-  if (auto problem = board::Problem(layout); !problem.empty()) return UsageError(problem);
-  const stream::BoardLayout before = store_.LayoutOf(layout.rig);
-  const auto same = [](const stream::BoardPose& a, const stream::BoardPose& b) {
-    return a.x_m == b.x_m && a.y_m == b.y_m && a.yaw_rad == b.yaw_rad;
-  };
-  const bool changed = before.preset != layout.preset || before.gap_mm != layout.gap_mm ||
-                       !same(before.left, layout.left) || !same(before.right, layout.right);
-  if (!store_.SetLayout(layout)) return Failure("layout: there are too many rigs already");
-  if (changed) {
-    store_.MarkStale(layout.rig, "layout", "", "the layout was changed and not checked since");
-  }
-  return Measured{0, "",
-                  layout.preset == "single"
-                      ? "one board alone: left and right foot cannot be distinguished"
-                      : ""};
-}
-
 Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget) {
   const std::string& name = rig.empty() ? config_.default_rig : rig;
   if (name.size() > kMostNameBytes || item.name.size() > kMostNameBytes ||
@@ -256,6 +225,28 @@ Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& i
     store_.SetMoved(device->identity().serial, false);
     device->chain().RestartWatch();
   }
+  return {};
+}
+
+Result<void> Hub::ShowPrompt(std::uint64_t session, const std::string& rig,
+                             const std::optional<stream::SetupPrompt>& prompt) {
+  const std::string& name = rig.empty() ? config_.default_rig : rig;
+  if (const auto checked = CheckRig(name); !checked) {
+    return UsageError("show_prompt: " + checked.error().message);
+  }
+  content_.has_setup = true;
+  if (!prompt) {
+    prompts_.erase(name);
+    return {};
+  }
+  if (prompt->item.size() > kMostNameBytes || prompt->text.size() > kMostNoteBytes) {
+    return UsageError("show_prompt: the item is longer than 64 bytes, or the text than 1024");
+  }
+  if (!prompts_.contains(name) && prompts_.size() >= kMostPrompts) {
+    return Failure("show_prompt: there are too many prompts already");
+  }
+  prompts_[name] = {session, *prompt};
+  prompts_[name].prompt.number = ++last_prompt_;
   return {};
 }
 

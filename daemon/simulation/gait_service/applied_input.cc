@@ -34,6 +34,7 @@ void Fields(Way way, const mapping::StickInput&) {
   FOOTING_FIELD(y);
   FOOTING_FIELD(pressed);
   FOOTING_FIELD(presses);
+  FOOTING_ENUM(DeviceRole, role);
 }
 FOOTING_BOTH_WAYS_OF(mapping::StickInput, v1::StickInput)
 

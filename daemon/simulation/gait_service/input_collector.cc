@@ -27,13 +27,16 @@ bool IsFinite(const v1::BoardSample& sample) {
          std::isfinite(sample.cop_x_m()) && std::isfinite(sample.cop_y_m());
 }
 
+bool HasNunchuk(const v1::DeviceStatus& device) {
+  return device.extension() == v1::EXTENSION_NUNCHUK ||
+         device.extension() == v1::EXTENSION_MOTION_PLUS_NUNCHUK;
+}
+
 /// Whether the device can have what the interface reads: a stick is that of a Nunchuk. One that has
 /// not said yet what is plugged in may have it.
 bool MayServe(const v1::DeviceStatus& device, UserInterface interface) {
   if (interface != UserInterface::kJoystick) return true;
-  return device.extension() == v1::EXTENSION_UNSPECIFIED ||
-         device.extension() == v1::EXTENSION_NUNCHUK ||
-         device.extension() == v1::EXTENSION_MOTION_PLUS_NUNCHUK;
+  return device.extension() == v1::EXTENSION_UNSPECIFIED || HasNunchuk(device);
 }
 
 /// A sample that is used as it is: decoded when it arrived, it then waited for its tick.
@@ -99,6 +102,23 @@ void InputCollector::Bind() {
     const DeviceRole role = RoleIn(device.role());
     if (Follows(device.rig(), role)) bound_[device.device()] = {role, device.mounted()};
   }
+  if (options_.interface == UserInterface::kJoystick) inputs_.stick.role = StickRole();
+}
+
+DeviceRole InputCollector::StickRole() const {
+  if (stick_device_ != 0 && mapping::Uses(options_, RoleOf(stick_device_))) {
+    return RoleOf(stick_device_);
+  }
+  DeviceRole role = DeviceRole::kUnspecified;
+  int hands = 0;
+  for (const v1::DeviceStatus& device : status_.devices()) {
+    const DeviceRole hand = RoleOf(device.device());
+    if (!mapping::Uses(options_, hand) || !MayServe(device, options_.interface)) continue;
+    if (HasNunchuk(device)) return hand;
+    role = hand;
+    ++hands;
+  }
+  return hands == 1 ? role : DeviceRole::kUnspecified;
 }
 
 bool InputCollector::TakeFeatures(const v1::FeatureFrame& frame) {
@@ -129,6 +149,7 @@ bool InputCollector::TakeStick(const v1::Tick& tick, std::int64_t now_ns) {
     if (stick.present && sample.device() != stick_device_) continue;
     stick_device_ = sample.device();
     stick.present = true;
+    stick.role = RoleOf(stick_device_);
     stick.x = sample.stick_x();
     stick.y = sample.stick_y();
     stick_ = {now_ns, sample.simulated()};
@@ -180,8 +201,10 @@ bool InputCollector::Expire(std::int64_t now_ns) {
     ended = true;
   };
   const std::uint64_t presses = inputs_.stick.presses;
+  const DeviceRole role = inputs_.stick.role;
   expire(stick_, inputs_.stick);
   inputs_.stick.presses = presses;
+  inputs_.stick.role = role;
   expire(left_board_, inputs_.left_board);
   expire(right_board_, inputs_.right_board);
   return ended;
@@ -193,6 +216,7 @@ bool InputCollector::Take(const v1::Tick& tick, std::int64_t now_ns) {
     rig_ = wanted_rig_;
     status_.Clear();
     bound_.clear();
+    stick_device_ = 0;
   }
   if (tick.has_status()) {
     status_ = tick.status();
@@ -205,7 +229,12 @@ bool InputCollector::Take(const v1::Tick& tick, std::int64_t now_ns) {
     case UserInterface::kWrist:
     case UserInterface::kArm:
     case UserInterface::kLeg:
-      return tick.has_features() && TakeFeatures(tick.features());
+      if (tick.has_features() && TakeFeatures(tick.features())) {
+        features_.seen_ns = now_ns;
+        return true;
+      }
+      if (NanosecondsToSeconds(now_ns - features_.seen_ns) > kFeaturesTimeoutS) inputs_ = {};
+      return false;
     case UserInterface::kJoystick:
     case UserInterface::kBoards:
       break;

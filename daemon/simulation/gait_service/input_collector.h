@@ -13,11 +13,13 @@
 namespace footing::gait_service {
 
 /// Collects what one rig's controllers and boards send into the inputs of a user interface, on the
-/// io thread. A stick or a board without samples for longer than kTimeoutS is not present. Samples
-/// that are not finite count as none.
+/// io thread. A stick or a board without samples for longer than kTimeoutS is not present, and
+/// neither is a controller when the rig has had no features for longer than kFeaturesTimeoutS.
+/// Samples that are not finite count as none.
 class InputCollector {
  public:
   static constexpr double kTimeoutS = 0.25;
+  static constexpr double kFeaturesTimeoutS = 0.5;
 
   /// `rig` empty: the first rig with a device that the interface uses.
   InputCollector(std::string rig, const mapping::InterfaceOptions& options);
@@ -50,6 +52,8 @@ class InputCollector {
   /// Whether the rig is followed; the first one that can be is, until the server restarts.
   bool Follows(const std::string& rig, stream::DeviceRole role);
   void Bind();
+  /// The hand whose Wiimote has the stick, or may have it; unspecified where that is not known.
+  stream::DeviceRole StickRole() const;
   /// The rig for an interface, by its devices; else what is missing.
   Result<std::string> RigFor(const mapping::InterfaceOptions& options) const;
   bool TakeFeatures(const v1::FeatureFrame& frame);
@@ -69,7 +73,7 @@ class InputCollector {
   mapping::Inputs inputs_;
   FeatureStamps stamps_;
   std::uint32_t stick_device_ = 0;
-  Age stick_, left_board_, right_board_;
+  Age features_, stick_, left_board_, right_board_;
 };
 
 }  // namespace footing::gait_service

@@ -22,15 +22,19 @@ SensorInput::SensorInput(std::string rig, const mapping::InterfaceOptions& optio
 }
 
 void SensorInput::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
-  if (tick.refilled() || !collector_.Take(tick, now_ns)) return;
+  if (tick.refilled()) return;
+  const bool taken = collector_.Take(tick, now_ns);
+  if (!taken && tick.snapshot()) return;
   inputs_.engine.features = collector_.inputs();
   ++inputs_.engine.features_number;
   inputs_.sensor_epoch = tick.epoch();
   inputs_.sensor_sequence = tick.sequence();
-  FeatureStamps stamps = collector_.stamps();
-  stamps.number = inputs_.engine.features_number;
-  stamps.received_ns = now_ns;
-  responses_.Received(stamps);
+  if (taken) {
+    stamps_ = collector_.stamps();
+    stamps_.received_ns = now_ns;
+  }
+  stamps_.number = inputs_.engine.features_number;
+  responses_.Received(stamps_);
   Publish();
 }
 

@@ -19,6 +19,8 @@ class SensorInput {
   SensorInput(std::string rig, const mapping::InterfaceOptions& options,
               exchange::Latest<Inputs>& out, Responses& responses);
 
+  /// Each live tick is new to the engine, also one in which all devices of the rig are silent: that
+  /// footingd answers and says so is not the same as that nothing comes from it.
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
   /// What the engine has done with the inputs so far.
   void OnFrame(const Frame& frame) { appends_taken_ = frame.output.append.number; }
@@ -49,6 +51,7 @@ class SensorInput {
   exchange::Latest<Inputs>& out_;
   Responses& responses_;
   Inputs inputs_;
+  FeatureStamps stamps_;  ///< Of the newest that was not silence.
   std::uint64_t appends_taken_ = 0;   ///< Or refused, by the engine.
   std::uint64_t direct_session_ = 0;  ///< Of the newest DirectGait.
 };

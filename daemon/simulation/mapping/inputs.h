@@ -46,6 +46,8 @@ struct StickInput {
   double y = 0;               ///< -1 back to 1 front.
   bool pressed = false;       ///< Button A.
   std::uint64_t presses = 0;  ///< So far; none is lost between two inputs.
+  /// Of that Wiimote, also while it is not present; unspecified: not known.
+  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
 
   bool operator==(const StickInput&) const = default;
 };

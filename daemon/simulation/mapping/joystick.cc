@@ -10,7 +10,14 @@ namespace footing::mapping {
 namespace {
 
 using stream::Activity;
+using stream::DeviceRole;
 using stream::Gait;
+
+/// The hand whose Wiimote has the stick; either one while that is not known.
+std::uint32_t HandsOf(DeviceRole role) {
+  if (role != DeviceRole::kUnspecified) return stream::RoleBit(role);
+  return stream::RoleBit(DeviceRole::kLeftHand) | stream::RoleBit(DeviceRole::kRightHand);
+}
 
 /// -1 for a value that the state is beyond already, 1 for one that it has yet to pass.
 double Slack(bool beyond, double hysteresis) { return beyond ? -hysteresis : hysteresis; }
@@ -106,6 +113,7 @@ bool JoystickInterface::Jumps(double time_s, const Inputs& inputs) {
 biped::GaitCommand JoystickInterface::Advance(double time_s, const Inputs& inputs) {
   const StickInput& stick = inputs.stick;
   biped::GaitCommand command;
+  const DeviceRole role = stick.role == DeviceRole::kUnspecified ? role_ : stick.role;
   if (!stick.present) {
     *this = JoystickInterface(mapping_);
   } else {
@@ -115,6 +123,7 @@ biped::GaitCommand JoystickInterface::Advance(double time_s, const Inputs& input
       command.speed_mps = std::min(command.speed_mps, mapping_.jump_speed_max_mps);
     }
   }
+  role_ = role;
   Describe(stick, command);
   return command;
 }
@@ -130,7 +139,7 @@ void JoystickInterface::Describe(const StickInput& stick, const biped::GaitComma
       .gait = command.gait,
       .stick = {.valid = stick.present, .x = stick.x, .y = stick.y},
       .turn = {.valid = stick.present, .source = stream::TurnSource::kStick, .share = 1.5 * right}};
-  if (!stick.present) state_.missing_roles = stream::RoleBit(stream::DeviceRole::kRightHand);
+  if (!stick.present) state_.missing_roles = HandsOf(role_);
 }
 
 }  // namespace footing::mapping

@@ -68,6 +68,7 @@ class JoystickInterface {
   StickSector sector_ = StickSector::kStraight;
   bool known_ = false;  ///< Presses have been counted.
   std::uint64_t presses_ = 0;
+  stream::DeviceRole role_ = stream::DeviceRole::kUnspecified;  ///< Last known of the stick.
   HeldJump jump_;
   stream::InterfaceState state_;
 };

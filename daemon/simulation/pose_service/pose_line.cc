@@ -115,6 +115,9 @@ v1::CommandResult PoseLine::OnCommand(const transport::SessionInfo& who,
   if (const auto answer = lease_.Answer(command, who.session, clock::MonotonicNs())) return *answer;
   if (command.has_set_subject()) return TakeSubject(command.set_subject());
   if (command.has_calibrate_t_pose()) {
+    if (const std::string& problem = sensors_.board_problem(); !problem.empty()) {
+      return Answer(false, "calibrate_t_pose: " + problem);
+    }
     sensors_.Calibrate();
     return Answer(true, "");
   }
@@ -141,6 +144,9 @@ std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
   }
   v1::CharacterFrame characters =
       ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig(), sensors_.tracker());
+  if (!sensors_.board_problem().empty() && characters.characters_size() > 0) {
+    characters.mutable_characters(0)->mutable_body()->set_note(sensors_.board_problem());
+  }
   characters.set_lease_holder(lease_.holder());
   v1::Events events = events_.Between(frame, known.subject, now_ns);
   serving::AddLeaseEvents(lease_.TakeChanges(now_ns), now_ns, events);

@@ -71,9 +71,11 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
     const Board& before = boards_[static_cast<std::size_t>(side)];
     if (before.bound && before.device == device.device()) board = before;
     board.bound = true;
+    board.attached = device.state() != v1::DEVICE_STATE_LOST;
     board.device = device.device();
   }
   boards_ = boards;
+  CheckLayout();
   BindArms(status);
   BindMoves(status);
 }
@@ -102,14 +104,21 @@ void PoseSensors::BindArms(const v1::DeviceStatusList& status) {
   }
 }
 
+void PoseSensors::CheckLayout() {
+  const auto attached = std::count_if(boards_.begin(), boards_.end(),
+                                      [](const Board& board) { return board.attached; });
+  board_problem_ = board::ProblemWith(layout_, static_cast<std::size_t>(attached), followed_rig_);
+}
+
 void PoseSensors::Place(const v1::SetupState& setup) {
   stream::BoardLayout layout;
   for (const v1::RigSetup& message : setup.rigs()) {
     if (message.rig() == followed_rig_) layout = wire::FromProto(message).layout;
   }
-  layout = board::LayoutOr(layout);
-  PlaceCells(layout.left, layout.left_geometry, inputs_.sensors.loads.feet[0]);
-  PlaceCells(layout.right, layout.right_geometry, inputs_.sensors.loads.feet[1]);
+  layout_ = board::LayoutOr(layout);
+  PlaceCells(layout_.left, layout_.left_geometry, inputs_.sensors.loads.feet[0]);
+  PlaceCells(layout_.right, layout_.right_geometry, inputs_.sensors.loads.feet[1]);
+  CheckLayout();
 }
 
 void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) {
@@ -188,8 +197,9 @@ void PoseSensors::DropOld(std::int64_t now_ns) {
   for (std::size_t side = 0; side < boards_.size(); ++side) {
     Board& board = boards_[side];
     if (board.seen && IsOld(board.seen_ns, now_ns, kBoardTimeoutS)) board.seen = false;
-    inputs_.sensors.loads.feet[side].valid = board.seen;
-    inputs_.impulses[side] = board.seen ? board.meter.impulse() : board::BoardImpulse{};
+    const bool followed = board.seen && board_problem_.empty();
+    inputs_.sensors.loads.feet[side].valid = followed;
+    inputs_.impulses[side] = followed ? board.meter.impulse() : board::BoardImpulse{};
     inputs_.simulated |= board.seen && board.simulated;
   }
   const auto is_live = [&](BodySource& source, double timeout_s) {

@@ -20,6 +20,7 @@ namespace footing::pose_service {
 /// so far, of its insoles, of its hands and of the joints of its skeleton as they have gone on
 /// since the tracker saw them, and how its arms are held by the Wiimotes on them.
 ///
+/// Two boards in the layout of one are not followed: they would be in one place.
 /// A board or an insole without samples, or a hand or joint not seen, for longer than its timeout
 /// is not valid, which is not the same as no load. A joint that its tracker looked for and did not
 /// see is not valid from then on. Hands of several trackers are fused (TrackedHand); joints are
@@ -47,10 +48,13 @@ class PoseSensors {
   const PoseInputs& inputs() const { return inputs_; }
   /// Names of who tracked the hands last, "camera, kinect"; empty: nobody has.
   const std::string& tracker() const { return tracker_; }
+  /// Why the boards are not followed although they are there, for a person; empty: they are.
+  const std::string& board_problem() const { return board_problem_; }
 
  private:
   struct Board {
     bool bound = false;  ///< A device has the role.
+    bool attached = false;
     std::uint32_t device = 0;
     bool seen = false;
     std::int64_t seen_ns = 0;
@@ -69,6 +73,7 @@ class PoseSensors {
   void BindMoves(const v1::DeviceStatusList& status);
   /// Puts the cells where the followed rig's boards have them.
   void Place(const v1::SetupState& setup);
+  void CheckLayout();
   void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
   /// `age_s` of its exposure.
   void TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
@@ -92,6 +97,8 @@ class PoseSensors {
   std::string joint_tracker_;  ///< Whose joints are followed.
   std::int64_t joint_tracker_ns_ = 0;
   v1::SetupState setup_;  ///< As published last.
+  stream::BoardLayout layout_;
+  std::string board_problem_;
   PoseArms arms_;
   PoseInputs inputs_;
 };

@@ -155,6 +155,13 @@ inline std::vector<Case> Cases() {
       {"board_not_tared", S::kWarning, "tare 00:22:4c:11:22:33",
        [](Facts& f) { Board(f).tared = false; }},
       {"layout_missing", S::kWarning, "layout --rig main", [](Facts& f) { f.setup.clear(); }},
+      {"layout_single", S::kError, "--preset one_foot_each",
+       [](Facts& f) {
+         f.devices.push_back(Board(f));
+         f.devices.back().device = 3;
+         f.devices.back().serial = "00:22:4c:11:22:44";
+         f.devices.back().role = stream::DeviceRole::kRightBoard;
+       }},
       {"board_moved", S::kWarning, "--check", [](Facts& f) { Board(f).moved = true; }},
       {"mounting_slipped", S::kWarning, "--only mounting",
        [](Facts& f) { Wiimote(f).slipped = true; }},

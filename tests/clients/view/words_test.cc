@@ -188,6 +188,21 @@ TEST(LostSignal, NamesTheSensorDaemonWhereNothingComesFromIt) {
   EXPECT_THAT(LostLine(pose), AllOf(HasSubstr("No signal from any device"), HasSubstr("footingd")));
 }
 
+TEST(LostSignal, NamesTheHandOfTheJoystickAndTheBoard) {
+  made::Wish wish;
+  wish.missing_roles = stream::RoleBit(stream::DeviceRole::kLeftHand);
+  CharacterPose pose = made::TickAt(3, wish).frame->characters.front();
+  pose.interface.interface = stream::UserInterface::kJoystick;
+  ASSERT_TRUE(LostSignalOf(pose));
+  EXPECT_EQ(LostSignalOf(pose)->what, "No signal from the joystick in the left hand");
+  EXPECT_THAT(InterfaceText(pose.interface), HasSubstr("missing: the joystick in the left hand"));
+  pose.interface.missing_roles |= stream::RoleBit(stream::DeviceRole::kRightHand);
+  EXPECT_EQ(LostSignalOf(pose)->what, "No signal from the joystick");
+  pose.interface.interface = stream::UserInterface::kBoards;
+  pose.interface.missing_roles = stream::RoleBit(stream::DeviceRole::kRightBoard);
+  EXPECT_EQ(LostSignalOf(pose)->what, "No signal from the right board");
+}
+
 TEST(LostSignal, WithoutItsHeadAloneTheLegInterfaceDoesNotTurn) {
   CharacterPose pose = made::TickAt(3, {}).frame->characters.front();
   pose.interface.interface = stream::UserInterface::kLeg;

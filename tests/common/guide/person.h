@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/guide/set_up.h"
@@ -49,12 +50,13 @@ class Person {
       Situation now;
       now.now_ns = now_ns_;
       now.recent = &recent_;
-      now.setup = &setup_;
+      now.setup = &setup;
       now.adapters = {"hci0"};
       now.answers = std::move(answers_);
       answers_.clear();
       const Progress progress = set_up.Advance(now);
       Hear(progress.prompt);
+      if (!progress.prompt.empty()) gestures.insert({progress.gesture, progress.role});
       for (const Action& action : progress.actions) Serve(action);
       if (progress.finished) return set_up.results();
     }
@@ -68,7 +70,9 @@ class Person {
   bool deaf = false;        ///< Never does anything.
   bool clumsy = false;      ///< Shakes both shins at once.
   double mounting_deg = 4;  ///< What footingd finds.
+  std::vector<stream::RigSetup> setup;
   std::set<std::string> prompts;
+  std::set<std::pair<stream::Gesture, stream::DeviceRole>> gestures;
 
  private:
   void Hear(const std::string& whole) {
@@ -93,8 +97,8 @@ class Person {
     if (Asked("right board")) right = 1;
     if (Asked("Stand upright") || Asked("one foot on each") || Asked("Lean")) left = right = 0.5;
     if (Asked("Lean")) lean_m = 0.05;
-    if (Asked("Shake the left shin")) shake[0] = 12;
-    if (Asked("Shake the right shin")) shake[1] = 12;
+    if (Asked("Shake the left")) shake[0] = 12;
+    if (Asked("Shake the right")) shake[1] = 12;
     if (clumsy && Asked("Shake")) shake[0] = shake[1] = 12;
     if (Asked("three steps") && s < 2.5) shake[0] = shake[1] = 8;
     for (int i = 0; i < 5; ++i) {
@@ -153,7 +157,6 @@ class Person {
   std::int64_t heard_ns_ = 0;
   std::string heard_;
   Recent recent_;
-  std::vector<stream::RigSetup> setup_;
   std::vector<Answer> answers_;
 };
 

@@ -48,6 +48,42 @@ TEST(SetUp, WithoutBoardsAsksForNothingAboutBoards) {
   EXPECT_TRUE(Ready(Merged({}, results, person.devices), person.devices, nullptr));
 }
 
+bool AskedForSteps(const Person& person) {
+  return person.prompts.contains(
+      "Now take three steps forward, starting with the left foot, and stand again.");
+}
+
+TEST(SetUp, AsksForNoStepsWithRemotesThatAreHeld) {
+  const std::vector<stream::DeviceRole> hands{stream::DeviceRole::kLeftHand,
+                                              stream::DeviceRole::kRightHand};
+  const auto with_hands = [&] {
+    Person person;
+    person.SetRoles(
+        {stream::DeviceRole::kLeftBoard, stream::DeviceRole::kRightBoard, hands[0], hands[1]});
+    return person;
+  };
+  Person held = with_hands();
+  const auto results = held.Do({});
+  EXPECT_FALSE(AskedForSteps(held));
+  EXPECT_EQ(Find(results, "mounting", "serial-3"), nullptr);
+  for (auto& device : held.devices) device.tared = true;
+  std::vector<std::string> missing;
+  EXPECT_TRUE(Ready(Merged({}, results, held.devices), held.devices, &missing))
+      << (missing.empty() ? "" : missing.front());
+
+  Person wrists = with_hands();
+  EXPECT_NE(Find(wrists.Do({}, hands), "mounting", "serial-3"), nullptr) << "named as worn";
+  Person asked = with_hands();
+  EXPECT_NE(Find(asked.Do({Item::kMounting}), "mounting", "serial-4"), nullptr);
+  Person mounted = with_hands();
+  mounted.devices[3].mounted = true;
+  mounted.setup.emplace_back().rig = "main";
+  mounted.setup[0].items = {Outcome(Item::kMounting, "serial-3", true, 1, "deg", "")};
+  const auto again = mounted.Do({});
+  EXPECT_NE(Find(again, "mounting", "serial-3"), nullptr) << "its mounting is recorded";
+  EXPECT_NE(Find(again, "mounting", "serial-4"), nullptr) << "it has a mounting";
+}
+
 TEST(SetUp, GivesEachDeviceTheRoleOfTheGesture) {
   Person person;  // Roles begin crossed; the gestures put them right.
   person.SetRoles({stream::DeviceRole::kRightBoard, stream::DeviceRole::kLeftBoard,
@@ -180,6 +216,25 @@ TEST(SetUp, NeedsNoBoards) {
   EXPECT_EQ(Find(results, "layout"), nullptr);
   for (auto& device : person.devices) device.mounted = true;
   EXPECT_TRUE(Ready(Merged({}, results, person.devices), person.devices, nullptr));
+}
+
+TEST(SetUp, EachPromptSaysWhichGestureItIsAbout) {
+  using stream::DeviceRole;
+  using stream::Gesture;
+  Person person;
+  person.Do({});
+  EXPECT_EQ(person.gestures, (std::set<std::pair<Gesture, DeviceRole>>{
+                                 {Gesture::kUnspecified, DeviceRole::kUnspecified},  // Checks.
+                                 {Gesture::kSwitchOn, DeviceRole::kUnspecified},
+                                 {Gesture::kHoldStill, DeviceRole::kUnspecified},
+                                 {Gesture::kStepOff, DeviceRole::kUnspecified},
+                                 {Gesture::kStepOn, DeviceRole::kLeftBoard},
+                                 {Gesture::kStepOn, DeviceRole::kRightBoard},
+                                 {Gesture::kStand, DeviceRole::kUnspecified},
+                                 {Gesture::kLean, DeviceRole::kUnspecified},
+                                 {Gesture::kShake, DeviceRole::kLeftLeg},
+                                 {Gesture::kShake, DeviceRole::kRightLeg},
+                                 {Gesture::kTakeSteps, DeviceRole::kUnspecified}}));
 }
 
 }  // namespace

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "clients/stream/dialer.h"
+#include "clients/stream/setup_body.h"
 #include "common/log/log.h"
 #include "common/transport/address.h"
-#include "tests/scenarios/person/body.h"
 
 namespace {
 
@@ -33,7 +33,7 @@ constexpr std::size_t kLeftRemote = 2;     // Slots: left board, right board, le
 
 struct Options {
   transport::Address to;
-  scenario::Body::Worn worn = scenario::Body::Worn::kWrists;
+  stream_client::SetupBody::Place worn = stream_client::SetupBody::Place::kWrists;
   bool jumbled = false;
   bool low_battery = false;
 };
@@ -105,14 +105,14 @@ class Person {
       for (std::size_t slot = 0; slot < dialers_.size(); ++slot) SwitchOn(slot);
     } else if (line == "replug") {
       Replug();
-    } else if (!body_.Tell(line)) {
+    } else if (!body_.Do(line)) {
       std::cerr << "error: the person does not know: " << line << std::endl;
     }
   }
 
   asio::io_context& io_;
   Options options_;
-  scenario::Body body_;
+  stream_client::SetupBody body_;
   asio::posix::stream_descriptor in_;
   asio::streambuf text_;
   asio::steady_timer away_;
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   Options options;
   options.to = *to;
   for (std::size_t i = 1; i < words.size(); ++i) {
-    if (words[i] == "--shins") options.worn = scenario::Body::Worn::kShins;
+    if (words[i] == "--shins") options.worn = stream_client::SetupBody::Place::kShins;
     if (words[i] == "--jumbled") options.jumbled = true;
     if (words[i] == "--low-battery") options.low_battery = true;
   }

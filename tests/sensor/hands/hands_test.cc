@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "daemon/sensor/hands/exposure_clock.h"
 #include "daemon/sensor/hands/refusals.h"
 
 namespace footing::hands {
@@ -239,6 +240,32 @@ TEST(Hands, AnInsoleThatMakesNoSenseIsRefusedWithTheReason) {
     spoil(frame);
     EXPECT_THAT(Problem(frame), testing::HasSubstr(word));
   }
+}
+
+TEST(ExposureClock, TheSendersTimeIsTakenUnlessItIsOfAnotherClock) {
+  ExposureClock clock;
+  EXPECT_EQ(clock.Take({5'000'000'000, 4'990'000'000, 3'000'000}).sampled_ns, 4'987'000'000);
+  EXPECT_EQ(clock.Take({5'100'000'000, 99, 3'000'000}).sampled_ns, 5'097'000'000);
+  EXPECT_EQ(clock.Take({5'200'000'000, 5'300'000'000, 3'000'000}).sampled_ns, 5'197'000'000);
+}
+
+TEST(ExposureClock, EarlierFramesOfOneReadStayLaterThanWhatIsPublished) {
+  ExposureClock clock;
+  for (int i = 1; i <= 5; ++i) clock.Take({i * 10'000'000ll, 0, 0});
+  clock.Publish();
+  std::int64_t first_ns = clock.Take({60'000'000, 0, 0}).sampled_ns;
+  std::int64_t last_ns = first_ns;
+  for (int i = 0; i < 50; ++i) {
+    const auto exposure = clock.Take({60'000'000, 0, 0});
+    first_ns -= exposure.others_earlier_ns;
+    EXPECT_GT(exposure.sampled_ns, last_ns - exposure.others_earlier_ns);
+    last_ns = exposure.sampled_ns;
+  }
+  EXPECT_GT(first_ns, 50'000'000);
+  clock.Publish();
+  const auto next = clock.Take({60'000'000, 0, 0});
+  EXPECT_EQ(next.others_earlier_ns, 0) << "what is published no longer changes";
+  EXPECT_GT(next.sampled_ns, last_ns);
 }
 
 }  // namespace

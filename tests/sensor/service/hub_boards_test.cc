@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/units/units.h"
@@ -186,6 +187,41 @@ TEST(HubBoards, OneAloneWorksAndSaysThatItIs) {
   EXPECT_THAT(set->message, HasSubstr("cannot be distinguished"));
   bench.Advance(0.5);
   EXPECT_EQ(bench.StatusOf("a").note, "") << "it is meant to be alone";
+}
+
+TEST(HubBoards, TheLayoutOfOneBoardIsRefusedForTwo) {
+  Bench bench;
+  stream::BoardLayout single;
+  single.preset = "single";
+  bench.Attach(BalanceBoard(1), "a");
+  ASSERT_TRUE(bench.hub().SetBoardLayout(single));
+  stream::SetupItem checked;
+  checked.name = "layout";
+  checked.passed = true;
+  ASSERT_TRUE(bench.hub().RecordSetup("main", checked, false));
+  bench.Advance(0.5);
+  const auto lines = bench.log.size();
+  const auto second = bench.Attach(BalanceBoard(2), "b");
+  bench.Advance(0.5);
+  for (const char* serial : {"a", "b"}) {
+    EXPECT_THAT(bench.StatusOf(serial).note, HasSubstr("--preset one_foot_each")) << serial;
+  }
+  ASSERT_FALSE(bench.content.setup.empty());
+  EXPECT_TRUE(bench.content.setup[0].items[0].stale) << "what was checked was another layout";
+  EXPECT_EQ(std::count_if(bench.log.begin() + static_cast<std::ptrdiff_t>(lines), bench.log.end(),
+                          [](const std::string& line) {
+                            return line.find("the layout single is for one board") !=
+                                   std::string::npos;
+                          }),
+            1);
+  const auto refused = bench.hub().SetBoardLayout(single);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("rig main has 2"));
+  ASSERT_TRUE(bench.hub().SetBoardLayout(OneFootEach()));
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("a").note, "");
+  bench.Detach(second);
+  EXPECT_TRUE(bench.hub().SetBoardLayout(single));
 }
 
 class MovedBoard : public testing::Test {

@@ -36,6 +36,40 @@ TEST(HubHands, EverySampleSinceTheLastTickIsPublishedOnce) {
   EXPECT_EQ(bench.content.reference[0].sampled_ns, 998'000'000);
 }
 
+TEST(HubHands, FramesThatAreReadTogetherHaveTheTimesAtWhichTheyWereExposed) {
+  constexpr std::int64_t kMs = 1'000'000;
+  const std::int64_t ages_ns[] = {0, 2 * kMs, 100'000, kMs};  // How late each was sent.
+  for (const bool stated : {true, false}) {
+    Bench bench;
+    const auto send = [&](int i, std::int64_t received_ns) {
+      stream::HandFrame frame = Fist(0.1);
+      frame.tracker = "eye";
+      frame.age_ns = ages_ns[i % 4];
+      if (stated) frame.sent_ns = i * 16 * kMs + frame.age_ns;
+      bench.hub().OnHands(received_ns, frame);
+    };
+    std::vector<std::int64_t> sampled_ns;
+    const auto publish = [&] {
+      bench.Advance(0.01);
+      for (const auto& sample : bench.content.hands) sampled_ns.push_back(sample.sampled_ns);
+      bench.content.hands.clear();
+    };
+    for (int i = 1; i < 10; ++i) send(i, i * 16 * kMs + ages_ns[i % 4]);
+    publish();
+    for (int i = 10; i < 14; ++i) send(i, (13 * 16 + 4) * kMs);  // footingd was busy.
+    publish();
+    send(14, (14 * 16 + 3) * kMs);
+    publish();
+    ASSERT_EQ(sampled_ns.size(), 14u);
+    for (std::size_t k = 0; k < sampled_ns.size(); ++k) {
+      const auto exposed_ms = static_cast<double>(16 * (k + 1));
+      EXPECT_NEAR(1e-6 * static_cast<double>(sampled_ns[k]), exposed_ms, stated ? 0 : 8) << k;
+      if (k == 0) continue;
+      EXPECT_GT(sampled_ns[k], sampled_ns[k - 1]) << stated << " " << k;
+    }
+  }
+}
+
 TEST(HubHands, ABadFrameIsCountedSaidOnceAndLosesNothingElse) {
   Bench bench;
   const auto before = bench.log.size();

@@ -49,6 +49,41 @@ TEST(HubRecord, ForgetsAndRefusesWhatIsTooLong) {
   EXPECT_TRUE(bench.content.setup.empty());
 }
 
+TEST(HubPrompts, ArePublishedUntilTheSetupOrItsSessionEnds) {
+  Kept kept;
+  Bench bench({}, kept.storage());
+  const stream::SetupPrompt shake{"roles", "Shake the left wrist now.", stream::Gesture::kShake,
+                                  DeviceRole::kLeftHand};
+  const auto published = [&bench] {
+    bench.Advance(0.1);
+    const auto& setup = bench.content.setup;
+    return setup.empty() ? std::nullopt : setup[0].prompt;
+  };
+  ASSERT_TRUE(bench.hub().ShowPrompt(7, "", shake));
+  ASSERT_TRUE(published());
+  EXPECT_EQ(bench.content.setup[0].rig, "main");
+  EXPECT_EQ(published()->text, shake.text);
+  EXPECT_EQ(published()->gesture, stream::Gesture::kShake);
+  EXPECT_EQ(published()->role, DeviceRole::kLeftHand);
+  EXPECT_EQ(published()->number, 1u);
+  ASSERT_TRUE(bench.hub().ShowPrompt(7, "main", shake));
+  EXPECT_EQ(published()->number, 2u) << "asked for again";
+  bench.hub().EndSession(6);
+  EXPECT_TRUE(published());
+  bench.hub().EndSession(7);
+  EXPECT_FALSE(published());
+  ASSERT_TRUE(bench.hub().ShowPrompt(8, "main", shake));
+  ASSERT_TRUE(published());
+  ASSERT_TRUE(bench.hub().ShowPrompt(8, "main", std::nullopt));
+  EXPECT_FALSE(published());
+  stream::SetupPrompt long_one = shake;
+  long_one.text = std::string(1025, 'x');
+  EXPECT_FALSE(bench.hub().ShowPrompt(8, "main", long_one));
+  Bench again({}, kept.storage());
+  again.Advance(0.1);
+  EXPECT_TRUE(again.content.setup.empty()) << "nothing of it is kept";
+}
+
 TEST(HubRoles, GivenByCommandOutliveARestartAndTheConfig) {
   Kept kept;
   Config config;

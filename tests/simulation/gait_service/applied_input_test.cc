@@ -15,7 +15,7 @@ mapping::Inputs AllInputs() {
   inputs.legs.phase_rad = -1.5;
   inputs.head = {true, false, false, 0, false, 0, true, 0.3, -0.2, false, 0, false};
   inputs.trunk = {true, true, false, 0, true, 3, true, -0.3, 0, true, 0.5, true};
-  inputs.stick = {true, -0.7, 0.1, true, 12};
+  inputs.stick = {true, -0.7, 0.1, true, 12, stream::DeviceRole::kLeftHand};
   inputs.left_board = {true, {100.1, 200.2, 300.3, -4.4}, true, 0.02, 0.17};
   inputs.right_board = {true, {1, 2, 3, 4}, false, 0, 0};
   inputs.simulated = true;

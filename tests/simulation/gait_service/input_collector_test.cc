@@ -100,6 +100,28 @@ TEST(InputCollector, AStickThatIsSilentIsGone) {
   EXPECT_EQ(collector.inputs().stick.presses, 1u);
 }
 
+TEST(InputCollector, ASilentStickIsStillThatOfItsHand) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  v1::Tick tick;
+  AddDevice(tick, 3, "main", v1::DEVICE_ROLE_LEFT_HAND);
+  AddDevice(tick, 4, "main", v1::DEVICE_ROLE_RIGHT_HAND);
+  tick.set_snapshot(true);
+  collector.Take(tick, 0);
+  EXPECT_EQ(collector.inputs().stick.role, stream::DeviceRole::kUnspecified) << "either may be it";
+  tick.mutable_status()->mutable_devices(0)->set_extension(v1::EXTENSION_NUNCHUK);
+  collector.Take(tick, 0);
+  EXPECT_EQ(collector.inputs().stick.role, stream::DeviceRole::kLeftHand);
+  tick.set_snapshot(false);
+  AddStick(tick, 3, 0, 1);
+  collector.Take(tick, kMs);
+  tick.mutable_status()->mutable_devices(0)->set_state(v1::DEVICE_STATE_LOST);
+  tick.mutable_status()->mutable_devices(0)->set_extension(v1::EXTENSION_UNSPECIFIED);
+  tick.clear_nunchuk();
+  collector.Take(tick, 400 * kMs);
+  EXPECT_FALSE(collector.inputs().stick.present);
+  EXPECT_EQ(collector.inputs().stick.role, stream::DeviceRole::kLeftHand);
+}
+
 TEST(InputCollector, BoardsHaveTheirCopInTheWorldAsTheyLie) {
   InputCollector collector("", {.interface = UserInterface::kBoards});
   v1::Tick snapshot;

@@ -52,7 +52,34 @@ TEST_F(SensorInputTest, FollowsOnlyTheRigThatWasNamed) {
   v1::Tick tick;
   AddRig(tick, "one", v1::DEVICE_ROLE_LEFT_HAND);
   input.OnTick(tick, 1);
-  EXPECT_FALSE(inputs.Refresh());
+  ASSERT_TRUE(inputs.Refresh());
+  EXPECT_EQ(inputs.Front().engine.features, mapping::Inputs{});
+}
+
+TEST_F(SensorInputTest, TicksWithoutTheRigsDevicesSayThatFootingdAnswers) {
+  using stream::UserInterface;
+  constexpr std::int64_t kMs = 1'000'000;
+  for (const UserInterface interface :
+       {UserInterface::kWrist, UserInterface::kJoystick, UserInterface::kBoards}) {
+    SensorInput input("", {.interface = interface}, inputs, responses);
+    v1::Tick first;
+    AddRig(first, "main", v1::DEVICE_ROLE_LEFT_HAND);
+    v1::DeviceStatus& device = *first.mutable_status()->add_devices();
+    device.set_device(1);
+    device.set_rig("main");
+    device.set_role(interface == UserInterface::kBoards ? v1::DEVICE_ROLE_LEFT_BOARD
+                                                        : v1::DEVICE_ROLE_LEFT_HAND);
+    first.mutable_nunchuk()->add_samples()->set_device(1);
+    first.mutable_boards()->add_samples()->set_device(1);
+    input.OnTick(first, 100 * kMs);
+    for (int i = 1; i <= 100; ++i) input.OnTick({}, (100 + 10 * i) * kMs);
+    ASSERT_TRUE(inputs.Refresh());
+    const engine::EngineInputs& engine = inputs.Front().engine;
+    EXPECT_EQ(engine.features_number, 101u) << stream::Name(interface);
+    EXPECT_FALSE(engine.features.hands.left.present);
+    EXPECT_FALSE(engine.features.stick.present);
+    EXPECT_FALSE(engine.features.left_board.present);
+  }
 }
 
 TEST_F(SensorInputTest, SnapshotsAndRefilledTicksAreThePastAndCommandNothing) {

@@ -104,6 +104,22 @@ TEST(Joystick, WithoutItsStickTheCharacterStopsAndTurnsNoMore) {
   EXPECT_NE(joystick.state().missing_roles, 0u);
 }
 
+TEST(Joystick, NamesTheHandWhoseStickIsMissing) {
+  JoystickInterface joystick = NewJoystick();
+  const std::uint32_t left = stream::RoleBit(stream::DeviceRole::kLeftHand);
+  joystick.Advance(0, {});
+  EXPECT_EQ(joystick.state().missing_roles, left | stream::RoleBit(stream::DeviceRole::kRightHand));
+  Inputs inputs = Stick(0.9, 0);
+  inputs.stick.role = stream::DeviceRole::kLeftHand;
+  joystick.Advance(1, inputs);
+  EXPECT_EQ(joystick.state().missing_roles, 0u);
+  inputs.stick = {.role = stream::DeviceRole::kLeftHand};
+  joystick.Advance(2, inputs);
+  EXPECT_EQ(joystick.state().missing_roles, left);
+  joystick.Advance(3, {});
+  EXPECT_EQ(joystick.state().missing_roles, left) << "nothing comes from footingd any more";
+}
+
 TEST(JoystickMapping, RefusesACentreBeyondTheRun) {
   std::string text = test::DataFile(kJoystickMappingFile);
   const std::string key = "\"centre_radius\": 0.25";

@@ -73,6 +73,27 @@ TEST_F(PoseSensorsTest, TheLayoutOfTheRigPlacesTheCells) {
   EXPECT_NEAR(left.y(), 2 - 0.433 / 2, 1e-9);
 }
 
+TEST_F(PoseSensorsTest, TwoBoardsInTheLayoutOfOneAreNotFollowed) {
+  v1::Tick tick = StatusTick();
+  v1::RigSetup& setup = *tick.mutable_setup()->add_rigs();
+  setup.set_rig("one");
+  setup.mutable_layout()->set_preset("single");
+  After(tick);
+  EXPECT_NE(sensors.board_problem().find("single is for one board"), std::string::npos);
+  EXPECT_FALSE(After(Boards({1, 2, 3, 4}, {5, 6, 7, 8})).sensors.loads.feet[0].valid);
+  setup.mutable_layout()->set_preset("one_foot_each");
+  After(tick);
+  EXPECT_EQ(sensors.board_problem(), "");
+  EXPECT_TRUE(After(Boards({1, 2, 3, 4}, {5, 6, 7, 8})).sensors.loads.feet[0].valid);
+  // The other one is switched off.
+  setup.mutable_layout()->set_preset("single");
+  for (v1::DeviceStatus& device : *tick.mutable_status()->mutable_devices()) {
+    if (device.device() == kRightDevice) device.set_state(v1::DEVICE_STATE_LOST);
+  }
+  After(tick);
+  EXPECT_EQ(sensors.board_problem(), "");
+}
+
 /// A rig's set-up with boards where nobody laid them out, whose sensors are this far apart.
 v1::Tick GeometryTick(double distance_x_m, double distance_y_m) {
   v1::Tick tick;

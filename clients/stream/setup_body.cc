@@ -1,22 +1,20 @@
-#include "tests/scenarios/person/body.h"
+#include "clients/stream/setup_body.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "common/board/geometry.h"
+#include "common/board/layout.h"
 #include "common/units/units.h"
 
-namespace footing::scenario {
+namespace footing::stream_client {
 namespace {
 
-constexpr double kWeightN = 70 * kStandardGravityMps2;
 constexpr double kLeanM = 0.05;
 constexpr double kFollowS = 0.1;
 constexpr double kHalfXM = board::kBalanceBoard.sensor_distance_x_m / 2;
 constexpr double kHalfYM = board::kBalanceBoard.sensor_distance_y_m / 2;
-// One foot on each: long axes fore and aft, power buttons outwards.
-constexpr double kYawRad[2] = {-kPi / 2, kPi / 2};
 constexpr double kTremorMps2 = 0.05;
 constexpr double kSwayM = 0.002;
 constexpr double kOvertone = 0.25;  // Without it half a period would look like a whole one.
@@ -36,13 +34,19 @@ double Follow(double value, double target, double elapsed_s) {
 
 }  // namespace
 
-stream::DeviceRole Body::Role(int limb) const {
+SetupBody::SetupBody(Place place, double mass_kg, int boards)
+    : place_(place), weight_n_(KilogramsToNewtons(mass_kg)), boards_(boards) {
+  const auto poses = board::OneFootEach(0);
+  Lay(poses[0].yaw_rad, poses[1].yaw_rad);
+}
+
+stream::DeviceRole SetupBody::Role(int limb) const {
   using stream::DeviceRole;
-  if (worn_ == Worn::kShins) return limb == 0 ? DeviceRole::kLeftLeg : DeviceRole::kRightLeg;
+  if (place_ == Place::kShins) return limb == 0 ? DeviceRole::kLeftLeg : DeviceRole::kRightLeg;
   return limb == 0 ? DeviceRole::kLeftHand : DeviceRole::kRightHand;
 }
 
-bool Body::Tell(const std::string& line) {
+bool SetupBody::Do(const std::string& line) {
   std::istringstream words(line);
   std::string verb;
   std::string which;
@@ -85,41 +89,41 @@ bool Body::Tell(const std::string& line) {
 }
 
 /// Share of the weight on the board that lies left (0) or right (1).
-double Body::Share(int place) const {
-  if (stance_ == "both") return 0.5;
+double SetupBody::Share(int place) const {
+  if (stance_ == "both") return boards_ == 1 ? 1 : 0.5;
   return stance_ == (place == 0 ? "left" : "right") ? 1 : 0;
 }
 
-virtual_devices::CornerForces Body::Board(int board, double t_s) {
+virtual_devices::CornerForces SetupBody::Board(int board, double t_s) {
   const auto i = static_cast<std::size_t>(board);
   const double elapsed_s = std::max(0.0, t_s - board_s_[i]);
   board_s_[i] = t_s;
   const int place = swapped_ ? 1 - board : board;
   share_[i] = Follow(share_[i], Share(place), elapsed_s);
   leaning_m_[i] = Follow(leaning_m_[i], lean_m_, elapsed_s);
-  const double yaw_rad = kYawRad[place] + (turned_[i] ? kPi : 0);
+  const double yaw_rad = yaw_rad_[static_cast<std::size_t>(place)] + (turned_[i] ? kPi : 0);
   const double forward_m = leaning_m_[i] + kSwayM * std::sin(2 * kPi * 0.7 * t_s);
   // In the plate's frame: x to the right, y to the front; yaw turns the front away from forward.
   const double x = forward_m * std::sin(yaw_rad) / kHalfXM;
   const double y = forward_m * std::cos(yaw_rad) / kHalfYM;
-  const double quarter_n = (share_[i] * kWeightN + 0.5 * random_.Normal()) / 4;
+  const double quarter_n = (share_[i] * weight_n_ + 0.5 * random_.Normal()) / 4;
   return {quarter_n * (1 - x) * (1 + y), quarter_n * (1 + x) * (1 + y),
           quarter_n * (1 - x) * (1 - y), quarter_n * (1 + x) * (1 - y)};
 }
 
 /// Along kSwing_M, from rest, in units of the amplitude.
-double Body::Wave(int limb) const {
+double SetupBody::Wave(int limb) const {
   const auto i = static_cast<std::size_t>(limb);
   const Swing& swing = swing_[i];
   double cycles = swing.frequency_hz * swinging_s_[i];
-  if (swing.in_turns && worn_ == Worn::kShins && limb == 1) cycles -= 0.5;
+  if (swing.in_turns && place_ == Place::kShins && limb == 1) cycles -= 0.5;
   if (cycles <= 0) return 0;
-  const bool back = swing.in_turns && worn_ == Worn::kWrists && limb == 0;
+  const bool back = swing.in_turns && place_ != Place::kShins && limb == 0;
   const double angle_rad = 2 * kPi * cycles + (back ? kPi : 0);
   return std::sin(angle_rad) + kOvertone * std::sin(2 * angle_rad);
 }
 
-Eigen::Vector3d Body::Limb(int limb, double t_s) {
+Eigen::Vector3d SetupBody::Limb(int limb, double t_s) {
   const auto i = static_cast<std::size_t>(limb);
   const double elapsed_s = std::max(0.0, t_s - limb_s_[i]);
   limb_s_[i] = t_s;
@@ -131,7 +135,9 @@ Eigen::Vector3d Body::Limb(int limb, double t_s) {
   if (strap_[i].loose && swing_[i].amplitude_mps2 > 0) {
     about_limb_rad += kRattleRad * std::sin(2 * kPi * kRattleHz * swinging_s_[i]);
   }
-  return Askew(limb) * (Eigen::AngleAxisd(about_limb_rad, Eigen::Vector3d::UnitZ()) * force_M);
+  const Eigen::Quaterniond strapped =
+      place_ == Place::kHands ? Eigen::Quaterniond::Identity() : Askew(limb);
+  return strapped * (Eigen::AngleAxisd(about_limb_rad, Eigen::Vector3d::UnitZ()) * force_M);
 }
 
-}  // namespace footing::scenario
+}  // namespace footing::stream_client

@@ -9,19 +9,22 @@
 #include "common/virtual/devices/balance_board.h"
 #include "common/virtual/noise/random.h"
 
-namespace footing::scenario {
+namespace footing::stream_client {
 
-/// A made person on two boards with a remote on each wrist or each shin, told in words what to do.
-/// Boards and limbs are numbered 0 (left) and 1 (right) by what the person calls them.
+/// A synthetic person on boards with a remote in each hand, on each wrist or on each shin, who does
+/// what a guided setup asks for. Boards and limbs are numbered 0 (left) and 1 (right) by what the
+/// person calls them.
 ///
 /// A limb that hangs feels (0, 0, -g) in its frame M (x left, y front, z down) and swings in the
 /// plane of front and down, from rest: left leg and right hand to the front first, the left hand to
-/// the back, the right leg half a cycle later. The remotes are strapped on askew, each in its own
-/// way, so that nothing is right before the mounting is found.
-class Body {
+/// the back, the right leg half a cycle later. Remotes on wrists and shins are strapped on askew,
+/// each in its own way, so that nothing is right before the mounting is found; those in the hands
+/// are held as they should be.
+class SetupBody {
  public:
-  enum class Worn { kWrists, kShins };
-  explicit Body(Worn worn) : worn_(worn) {}
+  enum class Place { kHands, kWrists, kShins };
+  /// One who stands on `boards` boards. They lie one foot each until Lay() says otherwise.
+  explicit SetupBody(Place place, double mass_kg = 70, int boards = 2);
 
   stream::DeviceRole Role(int limb) const;
 
@@ -29,7 +32,10 @@ class Body {
   /// jump | swap (the boards) | turn left | turn right (a board, by half) | slip left DEGREES |
   /// slip right DEGREES (a strap, about the limb) | loose left | loose right (a strap; again:
   /// tight). False when it is not known.
-  bool Tell(const std::string& line);
+  bool Do(const std::string& line);
+
+  /// How the boards lie: their yaw in W, as in stream::BoardPose.
+  void Lay(double left_yaw_rad, double right_yaw_rad) { yaw_rad_ = {left_yaw_rad, right_yaw_rad}; }
 
   /// What the board feels that lies in this place in the beginning. Times never go back.
   virtual_devices::CornerForces Board(int board, double t_s);
@@ -49,7 +55,10 @@ class Body {
   double Share(int place) const;
   double Wave(int limb) const;
 
-  Worn worn_;
+  Place place_;
+  double weight_n_;
+  int boards_;
+  std::array<double, 2> yaw_rad_;
   std::string stance_ = "off";
   double lean_m_ = 0;
   std::array<Swing, 2> swing_;
@@ -64,4 +73,4 @@ class Body {
   noise::Random random_{7};
 };
 
-}  // namespace footing::scenario
+}  // namespace footing::stream_client
