@@ -107,6 +107,9 @@ class Session : public std::enable_shared_from_this<Session> {
   bool guessing() const { return phase_ == Phase::kGuessed; }
   /// The answer at once, for somebody else needs the place.
   void AnswerGuess();
+  /// Has not said who it is, and somebody else needs its place: refuses it with this message, or
+  /// answers its guess.
+  void GiveWay(const std::string& message);
   /// It was refused, and lingers until the client has seen why.
   bool refused() const { return phase_ == Phase::kRefused; }
   /// It waits for its budget, or did within the last second.

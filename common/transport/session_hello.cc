@@ -31,6 +31,11 @@ void Session::OnHello(const v1::Hello& hello) {
   ArmTimer(shared_.options.ping_interval_s);
 }
 
+void Session::GiveWay(const std::string& message) {
+  if (guessing()) return AnswerGuess();
+  Refused(v1::Refused::REASON_TOO_MANY_SESSIONS, message);
+}
+
 void Session::AnswerGuess() { Refused(v1::Refused::REASON_TOKEN, guess_answer_); }
 
 }  // namespace footing::transport

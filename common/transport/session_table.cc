@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kMostListed = 500;  // Sessions in an answer: about 100 kB.
 constexpr std::size_t kMostReasonBytes = 200;
+/// The right token of a host that guesses must get in, so there may be more of these.
+constexpr std::int64_t kMostLingeringGuesses = 4 * SessionTable::kMostLingering;
 
 }  // namespace
 
@@ -68,22 +70,34 @@ bool SessionTable::EndAGuess(const std::optional<std::string>& host) {
   const auto guess = std::find_if(sessions_.begin(), sessions_.end(), [&](const auto& one) {
     return one->guessing() && (!host || one->peer().host == *host);
   });
-  if (guess == sessions_.end()) return false;
+  if (guess == sessions_.end() || lingering() >= kMostLingeringGuesses) return false;
   (*guess)->AnswerGuess();
   return true;
 }
 
-std::string SessionTable::WhyFull(const Session& session) {
+/// Who came last may be quick where others stall: the oldest of the host gives way.
+void SessionTable::BoundEntering(const Session& session) {
   const SessionLimits& limits = shared_.options.sessions;
   const std::string& host = session.peer().host;
+  if (CountsFor(session).entering_of_host < limits.max_entering_per_host) return;
+  if (lingering() >= kMostLingering) return;  // Each lingers for up to a second.
+  const auto oldest = std::find_if(sessions_.begin(), sessions_.end(), [&](const auto& one) {
+    return one->secured() && !one->welcomed() && !one->refused() && one->peer().host == host;
+  });
+  (*oldest)->GiveWay(shared_.options.server_id + " has " +
+                     WhyNoPlace(limits, session.peer(), geteuid(), CountsFor(session)) +
+                     "; end one or try again later");
+}
+
+std::string SessionTable::WhyFull(const Session& session) {
+  const std::string& host = session.peer().host;
   const auto why = [&] {
-    return WhyNoPlace(limits, session.peer(), geteuid(), CountsFor(session));
+    return WhyNoPlace(shared_.options.sessions, session.peer(), geteuid(), CountsFor(session));
   };
   BoundGuesses(host);
+  BoundEntering(session);
   std::string full = why();
-  if (!full.empty() && EndAGuess(host)) full = why();
-  const bool host_is_full = CountsFor(session).entering_of_host >= limits.max_entering_per_host;
-  if (!full.empty() && !host_is_full && EndAGuess(std::nullopt)) full = why();
+  if (!full.empty() && (EndAGuess(host) || EndAGuess(std::nullopt))) full = why();
   return full;
 }
 

@@ -24,8 +24,9 @@ class SessionTable {
   const std::vector<std::shared_ptr<Session>>& all() const { return sessions_; }
   std::int64_t lingering() const;
 
-  /// Why there is no place for one that is not in the table yet; empty when there is one. Guesses
-  /// of tokens keep no place that somebody else needs: the oldest has its answer then.
+  /// Why there is no place for one that is not in the table yet; empty when there is one. Makes
+  /// place for it: the oldest connection of its host that has not said who it is gives way, and so
+  /// does the oldest guess of a token.
   std::string WhyFull(const Session& session);
   void Add(const std::shared_ptr<Session>& session) { sessions_.push_back(session); }
   std::shared_ptr<Session> Remove(const Session& session);
@@ -40,6 +41,7 @@ class SessionTable {
   SessionCounts CountsFor(const Session& one) const;
   bool EndAGuess(const std::optional<std::string>& host);
   void BoundGuesses(const std::string& host);
+  void BoundEntering(const Session& session);
   v1::CommandResult List(const SessionInfo& who, std::uint64_t after) const;
   v1::CommandResult End(const SessionInfo& who, const v1::EndSessions& wish);
 
