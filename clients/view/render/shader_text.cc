@@ -37,7 +37,9 @@ vec4 ToScreen(vec3 colour) { return vec4(sqrt(colour / (1.0 + 0.10 * colour)), 1
 std::string GrainText() {
   return R"(
 vec4 WithGrain(vec4 colour) {
-  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  // A pattern of two by two pixels, which files of pictures hold in little space.
+  ivec2 at = ivec2(gl_FragCoord.xy) & 1;
+  float noise = 0.25 * float(2 * (at.x ^ at.y) + at.y) + 0.125;
   return vec4(colour.rgb + (noise - 0.5) / 255.0, colour.a);
 }
 )";
