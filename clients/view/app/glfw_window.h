@@ -3,10 +3,12 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 
 #include "clients/view/app/options.h"
+#include "clients/view/scene/camera.h"
 #include "common/result/result.h"
 
 namespace footing::view {
@@ -31,6 +33,27 @@ Result<GlfwWindow> OpenWindow(const GlfwLibrary& library, const Options& options
 
 /// How many pixels of the picture stand for one of a common monitor.
 float DisplayScale(GLFWwindow* window);
+
+/// A window takes the whole of a screen, and goes back to its place.
+class FullScreen {
+ public:
+  void Toggle(GLFWwindow* window);
+
+ private:
+  bool full_ = false;
+  int left_ = 0, top_ = 0, width_ = 0, height_ = 0;  ///< Of the window before.
+};
+
+/// A mouse that turns the view. Presses are at the place of the move before them: a slow picture
+/// handles many events at once, when the mouse itself is already further on.
+struct WindowMouse {
+  scene::MouseOrbit orbit;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< In heights of the window; y runs down.
+
+  /// The arguments of GLFW's callbacks.
+  void Move(GLFWwindow* window, double x, double y);
+  void Button(int action);
+};
 
 struct PixelSize {
   int width = 0;

@@ -1,5 +1,8 @@
+#include <algorithm>
+
 #include "clients/view/app/off_screen_view.h"
 #include "clients/view/app/options.h"
+#include "clients/view/app/pictures.h"
 #include "clients/view/app/play_session.h"
 #include "clients/view/app/play_view.h"
 #include "clients/view/app/subjects.h"
@@ -54,6 +57,12 @@ footing::Result<void> Resolve(const std::vector<std::string>& connect, const std
                               const PlayArguments& arguments, Options& options) {
   namespace transport = footing::transport;
   if (auto taken = TakeCamera(camera, options); !taken) return taken;
+  if (!options.screenshot.empty()) {
+    if (auto checked = footing::view::CheckPictureName(options.screenshot); !checked)
+      return checked;
+  } else if (!options.record.empty()) {
+    if (auto checked = footing::view::CheckRecordName(options.record); !checked) return checked;
+  }
   if (!options.play.recording.empty()) {
     const auto alignment = footing::view::AlignmentNamed(arguments.align);
     if (!alignment) return alignment.error();
@@ -102,11 +111,60 @@ void AddPlayOptions(CLI::App& app, Options& options, PlayArguments& arguments) {
   app.add_option("--align", arguments.align,
                  "What is at 0 s of both: start, finish or wall (time of day)")
       ->needs("--beside");
+  app.add_flag("--no-timeline{false}", options.look.timeline,
+               "Play without the timeline under the picture (key L)")
+      ->needs(recording);
   app.add_option("--speed", options.play.speed, "Speed of playback, 0.1 to 8 (default 1)")
       ->needs(recording)
       ->check(CLI::Range(0.1, 8.0));
   app.add_option("--from", arguments.from_s, "Position to begin at, s (default: the beginning)")
       ->needs(recording);
+}
+
+/// The panels of --panels, by their names.
+void ChoosePanels(const std::vector<std::string>& names, footing::render::PanelChoice& panels) {
+  const auto named = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  panels = {named("character"), named("strips"), named("devices"), named("interface"),
+            named("boards")};
+}
+
+void AddPictureOptions(CLI::App& app, Options& options) {
+  app.add_option("--screenshot", options.screenshot,
+                 "File to draw one picture into, PNG or JPEG; then end");
+  app.add_option("--at", options.at_s,
+                 "Time of the screenshot: after connecting, or position in the recording, s "
+                 "(default 1)")
+      ->check(CLI::Range(-86400.0, 1e6));
+  app.add_option(
+      "--record", options.record,
+      "Folder to draw numbered PNG files into, or a film: NAME.mp4, .webm or .gif (needs "
+      "ffmpeg)");
+  app.add_option("--record-hz", options.record_hz, "Rate of the pictures of --record, Hz")
+      ->check(CLI::Range(0.1, 60.0));
+  app.add_option("--seconds", options.seconds, "Duration, s (0: until the window is closed)")
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--msaa", options.samples,
+                 "Samples per pixel for smooth edges: 0, 2, 4 or 8 (default: 4; in a "
+                 "window 0 where no graphics processor draws it)")
+      ->check(CLI::IsMember({0, 2, 4, 8}));
+  app.add_option("--width", options.width, "Width of the window or picture, pixels")
+      ->check(CLI::Range(320, 8192));
+  app.add_option("--height", options.height, "Height of the window or picture, pixels")
+      ->check(CLI::Range(180, 8192));
+  app.add_option("--ui-scale", options.look.ui_scale,
+                 "Size of panels and letters, 0.5 to 3 times the usual one (default 1)")
+      ->check(CLI::Range(0.5, 3.0));
+  app.add_option_function<std::vector<std::string>>(
+         "--panels",
+         [&options](const std::vector<std::string>& names) {
+           ChoosePanels(names, options.look.panels);
+         },
+         "Panels to show, with commas between: character, strips, devices, interface, boards "
+         "(default: all)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"character", "strips", "devices", "interface", "boards"}));
 }
 
 }  // namespace
@@ -132,23 +190,7 @@ int main(int argc, char** argv) {
   AddPlayOptions(*app, options, play);
   std::string camera;
   AddCameraOptions(*app, options, camera);
-  app->add_option("--screenshot", options.screenshot,
-                  "PNG file to draw one picture into; then end");
-  app->add_option("--at", options.at_s,
-                  "Time of the screenshot: after connecting, or position in the recording, s "
-                  "(default 1)")
-      ->check(CLI::Range(-86400.0, 1e6));
-  app->add_option("--record", options.record_folder, "Folder to draw numbered PNG files into");
-  app->add_option("--record-hz", options.record_hz, "Rate of the pictures of --record, Hz")
-      ->check(CLI::Range(0.1, 60.0));
-  app->add_option("--seconds", options.seconds, "Duration, s (0: until the window is closed)")
-      ->check(CLI::Range(0.0, 1e6));
-  app->add_option("--msaa", options.samples, "Samples per pixel for smooth edges: 0, 2, 4 or 8")
-      ->check(CLI::IsMember({0, 2, 4, 8}));
-  app->add_option("--width", options.width, "Width of the window or picture, pixels")
-      ->check(CLI::Range(320, 8192));
-  app->add_option("--height", options.height, "Height of the window or picture, pixels")
-      ->check(CLI::Range(180, 8192));
+  AddPictureOptions(*app, options);
   app->add_flag("--subject", options.subject,
                 "Show the world without panels, as for the subject's screen");
   app->add_flag("--overlay-reference", options.overlay_reference,

@@ -48,16 +48,17 @@ struct Studio {
     }
   }
 
-  Result<void> Shoot(const scene::Show::Shot& shot, const std::string& path) {
+  render::Image Draw(const scene::Show::Shot& shot) {
     target.Bind();
     render::HudOptions hud;
     hud.hidden = options.subject;
+    hud.panels = options.look.panels;
     hud.camera = options.camera.corner;
     hud.camera_alone = options.camera.alone;
     screen.Draw(
         {shot.picture, show.model(), shot.frame, clock::MonotonicNs(), shot.past, shot.past_ns},
         hud, target.width(), target.height());
-    return render::WritePng(target.Read(), path);
+    return target.Read();
   }
 
   /// Until the first tick, or until the time is over without one.
@@ -85,14 +86,15 @@ Result<void> TakeScreenshot(Studio& studio) {
     log::Warning(why + transport::RemedyFor(why, "start footing-sim, or name it with --connect"));
   }
   const auto shot = studio.FollowUntil(from_ns + SecondsToNanoseconds(studio.AtS()));
-  const auto written = studio.Shoot(shot, studio.options.screenshot);
+  const auto written = render::WritePicture(studio.Draw(shot), studio.options.screenshot);
   if (written) log::Info("wrote " + studio.options.screenshot);
   return written;
 }
 
 Result<void> Record(Studio& studio) {
   const Options& options = studio.options;
-  if (const auto made = MakePictureFolder(options.record_folder); !made) return made;
+  auto sink = PictureSink::Open(options.record, options.record_hz);
+  if (!sink) return sink.error();
   const double seconds = options.seconds > 0 ? options.seconds : kRecordS;
   const auto count = static_cast<int>(seconds * options.record_hz);
   int late = 0;
@@ -100,11 +102,11 @@ Result<void> Record(Studio& studio) {
     const std::int64_t due_ns =
         studio.started_ns + SecondsToNanoseconds((i + 1) / options.record_hz);
     if (clock::MonotonicNs() > due_ns + SecondsToNanoseconds(1 / options.record_hz)) ++late;
-    const auto written =
-        studio.Shoot(studio.FollowUntil(due_ns), NumberedPicture(options.record_folder, i));
+    const auto written = sink->Add(studio.Draw(studio.FollowUntil(due_ns)));
     if (!written) return written;
   }
-  log::Info("wrote pictures to " + options.record_folder);
+  if (const auto finished = sink->Finish(); !finished) return finished;
+  log::Info((IsFilm(options.record) ? "wrote " : "wrote pictures to ") + options.record);
   if (late > 0) {
     log::Warning(std::to_string(late) + " of " + std::to_string(count) +
                  " pictures are late: this machine needs a lower --record-hz");
@@ -121,6 +123,7 @@ Result<void> RunOffScreen(const Options& options) {
   if (!target) return target.error();
   auto screen = render::Screen::Create();
   if (!screen) return screen.error();
+  (*screen)->set_ui_scale(static_cast<float>(options.look.ui_scale));
   auto calibration = PoseCalibration::OfOptions(options.camera.calibration_file);
   if (!calibration) return calibration.error();
   Background background(options);

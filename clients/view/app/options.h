@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "clients/view/render/hud/hud.h"
 #include "clients/view/timeline/align.h"
 #include "common/transport/address.h"
 #include "footing/v1/command.pb.h"
@@ -28,13 +29,20 @@ struct CameraOptions {
   std::string calibration_file;  ///< The camera file whose pose is calibrated; empty: none is.
 };
 
+/// How the panels look.
+struct LookOptions {
+  double ui_scale = 1;         ///< Their size over the usual one.
+  render::PanelChoice panels;  ///< Of those at both sides.
+  bool timeline = true;        ///< Under a recording that is played.
+};
+
 /// What the command line asks for.
 struct Options {
   std::vector<transport::Address> addresses;
   PlayOptions play;
-  std::string screenshot;                  ///< A PNG file; empty for none.
+  std::string screenshot;                  ///< A PNG or JPEG file; empty for none.
   std::optional<double> at_s;              ///< When to take it, after connecting, or the position.
-  std::string record_folder;               ///< For numbered PNG files; empty for none.
+  std::string record;                      ///< A folder for numbered PNG files, or a film.
   double record_hz = 10;                   ///< Pictures a second.
   double seconds = 0;                      ///< Ends by itself; 0 runs on.
   bool subject = false;                    ///< The world without the panels.
@@ -45,11 +53,13 @@ struct Options {
   std::vector<v1::Command> next_subjects;  ///< What the key N sends, one after the other.
   bool forces = false;                     ///< Force arrows from the start.
   CameraOptions camera;
-  int samples = 0;  ///< Multisampling: 0, 2, 4, 8.
+  /// Samples per pixel: 0, 2, 4, 8; nothing: as many as render::Target chooses.
+  std::optional<int> samples;
+  LookOptions look;
   int width = 1280;
   int height = 720;
 
-  bool off_screen() const { return !screenshot.empty() || !record_folder.empty(); }
+  bool off_screen() const { return !screenshot.empty() || !record.empty(); }
 };
 
 }  // namespace footing::view

@@ -1,14 +1,55 @@
 #pragma once
 
-#include <string>
+#include <sys/types.h>
 
+#include <string>
+#include <utility>
+
+#include "clients/view/render/image.h"
 #include "common/result/result.h"
 
 namespace footing::view {
 
-/// A folder for numbered pictures, made where it is missing.
-Result<void> MakePictureFolder(const std::string& folder);
+/// UsageError unless a picture can have that name: NAME.png, NAME.jpg, or a name without an ending.
+Result<void> CheckPictureName(const std::string& path);
+
+/// Whether the name is that of a film, by its ending: "walk.mp4".
+bool IsFilm(const std::string& path);
+
+/// UsageError where --record cannot go: into a folder that has pictures, over a film that is there,
+/// or into a film without the program ffmpeg.
+Result<void> CheckRecordName(const std::string& path);
+
 /// "folder/000042.png".
 std::string NumberedPicture(const std::string& folder, int number);
+
+/// Where the pictures of --record go: into a folder as numbered PNG files, or through ffmpeg into a
+/// film. Nothing that is there already is overwritten.
+class PictureSink {
+ public:
+  /// `hz` is the rate of the pictures. Makes the folder where it is missing.
+  static Result<PictureSink> Open(const std::string& path, double hz);
+  PictureSink(PictureSink&& other) noexcept;
+  PictureSink& operator=(PictureSink&&) = delete;
+  PictureSink(const PictureSink&) = delete;
+  ~PictureSink();
+
+  /// All pictures have the size of the first one.
+  Result<void> Add(const render::Image& image);
+  /// Completes the film; the error says what ffmpeg said.
+  Result<void> Finish();
+  int count() const { return count_; }
+
+ private:
+  PictureSink(std::string path, double hz) : path_(std::move(path)), hz_(hz) {}
+  Result<void> StartFilm(const render::Image& first);
+  void CloseFilm();
+
+  std::string path_;
+  double hz_ = 0;
+  int count_ = 0;
+  int to_film_ = -1;  ///< The socket that ffmpeg reads.
+  pid_t film_ = -1;   ///< Its process.
+};
 
 }  // namespace footing::view

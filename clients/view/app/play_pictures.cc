@@ -33,7 +33,8 @@ PlayPicture PictureFor(const Options& options, const PlaySession& session) {
   picture.hud.forces = options.forces;
   picture.hud.overlay_reference = options.overlay_reference;
   picture.hud.columns = session.sides().size() == 1;
-  picture.timeline = !options.subject;
+  picture.hud.panels = options.look.panels;
+  picture.timeline = options.look.timeline && !options.subject;
   return picture;
 }
 
@@ -45,7 +46,8 @@ void DrawSession(render::Screen& screen, PlaySession& session, const PlayPicture
   std::vector<render::PlayedView> views;
   render::TimelineContent line{session.timeline(), {}, session.head(), TrialTextOf(session)};
   for (PlayedSide& side : session.sides()) {
-    const scene::Show::Shot& shot = shots.emplace_back(session.ShotOf(side, stage));
+    scene::Show::Shot& shot = shots.emplace_back(session.ShotOf(side, stage));
+    shot.picture.camera = scene::Orbited(shot.picture.camera, picture.orbit);
     const std::int64_t now_ns = session.ClockOf(side);
     views.push_back({{shot.picture, side.show.model(), shot.frame, now_ns, shot.past, shot.past_ns},
                      compared && !picture.hud.hidden ? side.name : "",
@@ -56,9 +58,11 @@ void DrawSession(render::Screen& screen, PlaySession& session, const PlayPicture
                        height);
 }
 
-Result<std::unique_ptr<render::Screen>> ScreenFor(const PlaySession& session) {
+Result<std::unique_ptr<render::Screen>> ScreenFor(const Options& options,
+                                                  const PlaySession& session) {
   auto screen = render::Screen::Create();
   if (!screen) return screen;
+  (*screen)->set_ui_scale(static_cast<float>(options.look.ui_scale));
   for (std::size_t i = 1; i < session.sides().size(); ++i) {
     if (const auto added = (*screen)->AddWorld(); !added) return added.error();
   }
@@ -70,31 +74,31 @@ Result<void> DrawPlayedPictures(const Options& options, PlaySession& session) {
   if (!context) return context.error();
   auto target = render::Target::Create(options.width, options.height, options.samples);
   if (!target) return target.error();
-  auto screen = ScreenFor(session);
+  auto screen = ScreenFor(options, session);
   if (!screen) return screen.error();
   const PlayPicture picture = PictureFor(options, session);
-  const auto shoot = [&](const std::string& path) {
+  const auto draw = [&] {
     target->Bind();
     DrawSession(**screen, session, picture, target->width(), target->height());
-    return render::WritePng(target->Read(), path);
+    return target->Read();
   };
   if (!options.screenshot.empty()) {
-    const auto written = shoot(options.screenshot);
+    const auto written = render::WritePicture(draw(), options.screenshot);
     if (written) log::Info("wrote " + options.screenshot);
     return written;
   }
-  if (const auto made = MakePictureFolder(options.record_folder); !made) return made;
+  auto sink = PictureSink::Open(options.record, options.record_hz);
+  if (!sink) return sink.error();
   const timeline::PlayHead from = session.head();
   const double left_s = (from.end_s - from.at_s) / from.speed;
   const double seconds = options.seconds > 0 ? std::min(options.seconds, left_s) : left_s;
   const auto count = static_cast<int>(seconds * options.record_hz) + 1;
   for (int i = 0; i < count; ++i) {
     session.head() = timeline::Advanced(from, i / options.record_hz);
-    if (const auto written = shoot(NumberedPicture(options.record_folder, i)); !written) {
-      return written;
-    }
+    if (const auto written = sink->Add(draw()); !written) return written;
   }
-  log::Info("wrote " + std::to_string(count) + " pictures to " + options.record_folder);
+  if (const auto finished = sink->Finish(); !finished) return finished;
+  log::Info("wrote " + std::to_string(count) + " pictures to " + options.record);
   return {};
 }
 

@@ -13,6 +13,7 @@ namespace footing::view {
 struct PlayPicture {
   render::HudOptions hud;
   bool timeline = true;
+  scene::Orbit orbit = {};
 };
 
 /// As the options ask: for the subject neither panels nor timeline; side by side no columns.
@@ -23,10 +24,11 @@ void DrawSession(render::Screen& screen, PlaySession& session, const PlayPicture
                  int width, int height);
 
 /// A screen with a world for each side.
-Result<std::unique_ptr<render::Screen>> ScreenFor(const PlaySession& session);
+Result<std::unique_ptr<render::Screen>> ScreenFor(const Options& options,
+                                                  const PlaySession& session);
 
-/// Draws options.screenshot at options.at_s, or pictures into options.record_folder from the head
-/// on; each at its exact position, however long it takes.
+/// Draws options.screenshot at options.at_s, or pictures into options.record from the head on; each
+/// at its exact position, however long it takes.
 Result<void> DrawPlayedPictures(const Options& options, PlaySession& session);
 
 }  // namespace footing::view

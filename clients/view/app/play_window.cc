@@ -46,6 +46,8 @@ struct Controls {
   PlayPicture picture;
   render::TimelineBoxes boxes;  ///< Of the picture drawn last.
   bool dragging = false;
+  WindowMouse mouse = {};
+  FullScreen full_screen = {};
 };
 
 Controls& ControlsOf(GLFWwindow* window) {
@@ -66,6 +68,9 @@ void OnPlayKey(GLFWwindow* window, int key, int, int action, int) {
   render::HudOptions& hud = controls.picture.hud;
   if (key == GLFW_KEY_F) hud.forces = !hud.forces;
   if (key == GLFW_KEY_O) hud.overlay_reference = !hud.overlay_reference;
+  if (key == GLFW_KEY_H) hud.hidden = !hud.hidden;
+  if (key == GLFW_KEY_Z) controls.mouse.orbit.Reset();
+  if (key == GLFW_KEY_F11) controls.full_screen.Toggle(window);
   if (key == GLFW_KEY_L) controls.picture.timeline = !controls.picture.timeline;
   if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
 }
@@ -101,11 +106,17 @@ void OnButton(GLFWwindow* window, int button, int action, int) {
   const bool on_bar = controls.picture.timeline && MouseOf(window).y >= controls.boxes.bar.low.y;
   controls.dragging = action == GLFW_PRESS && on_bar;
   if (controls.dragging) SeekToMouse(window, controls);
+  if (!on_bar || action != GLFW_PRESS) controls.mouse.Button(action);
 }
 
-void OnMove(GLFWwindow* window, double, double) {
+void OnScroll(GLFWwindow* window, double, double notches) {
+  ControlsOf(window).mouse.orbit.Scroll(notches);
+}
+
+void OnMove(GLFWwindow* window, double x, double y) {
   Controls& controls = ControlsOf(window);
   if (controls.dragging) SeekToMouse(window, controls);
+  controls.mouse.Move(window, x, y);
 }
 
 void PlayLoop(GLFWwindow* window, const Options& options, render::Screen& screen,
@@ -125,6 +136,7 @@ void PlayLoop(GLFWwindow* window, const Options& options, render::Screen& screen
     last_ns = now_ns;
     screen.set_display_scale(DisplayScale(window));
     const PixelSize size = BeginPicture(window);
+    controls.picture.orbit = controls.mouse.orbit.orbit();
     DrawSession(screen, session, controls.picture, size.width, size.height);
     controls.boxes =
         render::TimelineBoxesOf(screen, size.width, size.height, session.sides().size());
@@ -141,14 +153,15 @@ Result<void> RunPlayWindow(const Options& options, PlaySession& session) {
   const auto opened = OpenWindow(library, options);
   if (!opened) return opened.error();
   GLFWwindow* const window = opened->get();
-  auto screen = ScreenFor(session);
+  auto screen = ScreenFor(options, session);
   if (!screen) return screen.error();
-  Controls controls{session, PictureFor(options, session), {}, false};
+  Controls controls{session, PictureFor(options, session), {}};
   glfwSetWindowUserPointer(window, &controls);
   glfwSetKeyCallback(window, OnPlayKey);
   glfwSetCharCallback(window, OnPlayLetter);
   glfwSetMouseButtonCallback(window, OnButton);
   glfwSetCursorPosCallback(window, OnMove);
+  glfwSetScrollCallback(window, OnScroll);
   PlayLoop(window, options, **screen, controls);
   return {};
 }

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "clients/view/app/background.h"
@@ -11,6 +12,7 @@
 #include "clients/view/app/subjects.h"
 #include "clients/view/app/summary.h"
 #include "clients/view/render/screen.h"
+#include "clients/view/scene/live_keys.h"
 #include "common/clock/clock.h"
 #include "common/units/units.h"
 
@@ -19,26 +21,79 @@ namespace {
 
 constexpr char kSimulation[] = "footing-sim";
 
+/// What the callbacks of the window work on.
+struct LiveControls {
+  render::HudOptions hud;
+  WindowMouse mouse;
+  FullScreen full_screen;
+  std::string pressed;  ///< Capital letters of keys that the loop has yet to look at.
+};
+
+LiveControls& ControlsOfLive(GLFWwindow* window) {
+  return *static_cast<LiveControls*>(glfwGetWindowUserPointer(window));
+}
+
 void OnKey(GLFWwindow* window, int key, int, int action, int) {
   if (action != GLFW_PRESS) return;
-  auto& hud = *static_cast<render::HudOptions*>(glfwGetWindowUserPointer(window));
+  LiveControls& controls = ControlsOfLive(window);
+  render::HudOptions& hud = controls.hud;
+  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) {
+    controls.pressed += static_cast<char>('A' + key - GLFW_KEY_A);
+  }
   if (key == GLFW_KEY_F) hud.forces = !hud.forces;
   if (key == GLFW_KEY_P) hud.phases = !hud.phases;
-  if (key == GLFW_KEY_T) hud.t_pose_asked = true;
-  if (key == GLFW_KEY_N) hud.next_subject_asked = true;
   if (key == GLFW_KEY_O) hud.overlay_reference = !hud.overlay_reference;
   if (key == GLFW_KEY_R) hud.replay_asked = true;
   if (key == GLFW_KEY_C) hud.calibration_asked = true;
   if (key == GLFW_KEY_X) hud.calibration_end_asked = true;
   if (key == GLFW_KEY_V) hud.camera = !hud.camera;
+  if (key == GLFW_KEY_H) hud.hidden = !hud.hidden;
+  if (key == GLFW_KEY_Z) controls.mouse.orbit.Reset();
   if (key == GLFW_KEY_SPACE) hud.frozen = !hud.frozen;
+  if (key == GLFW_KEY_F11) controls.full_screen.Toggle(window);
   if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
 }
 
 // The question mark is a letter, on whichever key the layout has it.
 void OnLetter(GLFWwindow* window, unsigned int letter) {
-  auto& hud = *static_cast<render::HudOptions*>(glfwGetWindowUserPointer(window));
+  render::HudOptions& hud = ControlsOfLive(window).hud;
   if (letter == '?') hud.keys = !hud.keys;
+}
+
+void OnLiveButton(GLFWwindow* window, int button, int action, int) {
+  if (button == GLFW_MOUSE_BUTTON_LEFT) ControlsOfLive(window).mouse.Button(action);
+}
+
+void OnLiveMove(GLFWwindow* window, double x, double y) {
+  ControlsOfLive(window).mouse.Move(window, x, y);
+}
+
+void OnLiveScroll(GLFWwindow* window, double, double notches) {
+  ControlsOfLive(window).mouse.orbit.Scroll(notches);
+}
+
+void Say(scene::Model& model, const std::string& text) {
+  scene::Note note;
+  note.text = text;
+  note.received_ns = clock::MonotonicNs();
+  model.last.note = note;
+}
+
+/// The keys that send a command; a key that does nothing now says why.
+void Answer(LiveControls& controls, const Options& options, Background& background,
+            scene::Model& model, std::size_t& next_subject) {
+  const scene::KeyContext context =
+      scene::ContextOf(model, controls.hud.has_subjects, controls.hud.calibrates);
+  for (const char key : std::exchange(controls.pressed, "")) {
+    if (const std::string why = scene::WhyNoKey(key, context); !why.empty()) {
+      Say(model, why);
+    } else if (key == 'T') {
+      background.SendTo(kSimulation, TPoseCommand());
+    } else if (key == 'N') {
+      background.SendTo(kSimulation, options.next_subjects[next_subject++]);
+      next_subject %= options.next_subjects.size();
+    }
+  }
 }
 
 /// Key presses that belong to the calibration.
@@ -50,14 +105,12 @@ void Calibrate(render::HudOptions& hud, std::optional<PoseCalibration>& calibrat
     hud.camera = true;  // Whoever holds a sphere must see whether the camera does.
     return calibration->Begin();
   }
-  scene::Note note;
-  note.text = "Start footing-view with --calibrate-camera FILE, the camera's file.";
-  note.received_ns = clock::MonotonicNs();
-  model.last.note = note;
+  Say(model, "Start footing-view with --calibrate-camera FILE, the camera's file.");
 }
 
 void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
-          render::HudOptions& hud, std::optional<PoseCalibration>& calibration) {
+          LiveControls& controls, std::optional<PoseCalibration>& calibration) {
+  render::HudOptions& hud = controls.hud;
   Background background(options);
   scene::Show show;
   if (options.replay_falls) show.ReplayFalls();
@@ -72,12 +125,9 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
     background.Drain(show, calibration ? &*calibration : nullptr);
     const std::int64_t now_ns = clock::MonotonicNs();
     if (std::exchange(hud.replay_asked, false)) show.ToggleReplay(now_ns);
-    if (std::exchange(hud.t_pose_asked, false)) background.SendTo(kSimulation, TPoseCommand());
-    if (std::exchange(hud.next_subject_asked, false) && !options.next_subjects.empty()) {
-      background.SendTo(kSimulation, options.next_subjects[next_subject++]);
-      next_subject %= options.next_subjects.size();
-    }
-    const auto shot = show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference});
+    Answer(controls, options, background, show.model(), next_subject);
+    auto shot = show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference});
+    shot.picture.camera = scene::Orbited(shot.picture.camera, controls.mouse.orbit.orbit());
     screen.set_display_scale(DisplayScale(window));
     const PixelSize size = BeginPicture(window);
     screen.Draw({shot.picture, show.model(), shot.frame, now_ns, shot.past, shot.past_ns}, hud,
@@ -104,16 +154,24 @@ Result<void> RunWindow(const Options& options) {
   if (!screen) return screen.error();
   auto calibration = PoseCalibration::OfOptions(options.camera.calibration_file);
   if (!calibration) return calibration.error();
-  render::HudOptions hud;
+  (*screen)->set_ui_scale(static_cast<float>(options.look.ui_scale));
+  LiveControls controls;
+  render::HudOptions& hud = controls.hud;
   hud.hidden = options.subject;
   hud.forces = options.forces;
   hud.overlay_reference = options.overlay_reference;
   hud.camera = options.camera.corner || *calibration;
   hud.camera_alone = options.camera.alone;
-  glfwSetWindowUserPointer(window, &hud);
+  hud.panels = options.look.panels;
+  hud.has_subjects = !options.next_subjects.empty();
+  hud.calibrates = calibration->has_value();
+  glfwSetWindowUserPointer(window, &controls);
   glfwSetKeyCallback(window, OnKey);
   glfwSetCharCallback(window, OnLetter);
-  Loop(window, options, **screen, hud, *calibration);
+  glfwSetMouseButtonCallback(window, OnLiveButton);
+  glfwSetCursorPosCallback(window, OnLiveMove);
+  glfwSetScrollCallback(window, OnLiveScroll);
+  Loop(window, options, **screen, controls, *calibration);
   return {};
 }
 

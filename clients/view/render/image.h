@@ -17,5 +17,7 @@ struct Image {
 
 /// Writes a PNG; the error names the file.
 Result<void> WritePng(const Image& image, const std::string& path);
+/// Writes a JPEG where the name ends in .jpg or .jpeg, else a PNG.
+Result<void> WritePicture(const Image& image, const std::string& path);
 
 }  // namespace footing::render

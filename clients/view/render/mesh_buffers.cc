@@ -45,8 +45,8 @@ void StaticMesh::Draw() const {
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
-InstancedShape::InstancedShape(const scene::Mesh& mesh, bool rod)
-    : index_count_(static_cast<GLsizei>(mesh.indices.size())), rod_(rod) {
+InstancedShape::InstancedShape(const scene::Mesh& mesh, Kind kind)
+    : index_count_(static_cast<GLsizei>(mesh.indices.size())), kind_(kind) {
   static_assert(sizeof(scene::MeshVertex) == 24 && sizeof(scene::Part) == 96);
   glBindVertexArray(array_.name());
   Fill(GL_ARRAY_BUFFER, vertices_, mesh.vertices, GL_STATIC_DRAW);
@@ -64,21 +64,22 @@ void InstancedShape::Draw(const Program& program, const std::vector<scene::Part>
   if (instances.empty()) return;
   glBindVertexArray(array_.name());
   Fill(GL_ARRAY_BUFFER, instances_, instances, GL_STREAM_DRAW);
-  program.Set("u_is_rod", rod_ ? 1 : 0);
+  program.Set("u_kind", static_cast<int>(kind_));
   glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr,
                           static_cast<GLsizei>(instances.size()));
 }
 
 PartShapes::PartShapes()
-    : ball_(scene::UnitBall(24, 14), false),
-      bead_(scene::UnitBall(12, 6), false),
-      rod_(scene::UnitRod(12), true),
-      box_(scene::UnitBox(), false) {}
+    : ball_(scene::UnitBall(32, 18), InstancedShape::Kind::kSolid),
+      coarse_ball_(scene::UnitBall(12, 6), InstancedShape::Kind::kSolid),
+      rod_(scene::UnitRod(16), InstancedShape::Kind::kRod),
+      limb_(scene::UnitLimb(16, 4), InstancedShape::Kind::kLimb),
+      box_(scene::UnitBox(), InstancedShape::Kind::kSolid) {}
 
 void PartShapes::Draw(const Program& program, const scene::PartList& parts, bool coarse) {
-  (coarse ? bead_ : ball_).Draw(program, parts.balls);
-  bead_.Draw(program, parts.beads);
+  (coarse ? coarse_ball_ : ball_).Draw(program, parts.balls);
   rod_.Draw(program, parts.rods);
+  limb_.Draw(program, parts.limbs);
   box_.Draw(program, parts.boxes);
 }
 

@@ -29,18 +29,19 @@ class StaticMesh {
 /// A unit shape, drawn once for each part of a list.
 class InstancedShape {
  public:
-  /// `rod`: the vertex shader stretches it between the part's two ends.
-  InstancedShape(const scene::Mesh& mesh, bool rod);
+  /// How the vertex shader places a vertex of the shape: as it is, or with the taper of the part.
+  enum class Kind { kSolid = 0, kRod = 1, kLimb = 2 };
+  InstancedShape(const scene::Mesh& mesh, Kind kind);
   void Draw(const Program& program, const std::vector<scene::Part>& instances);
 
  private:
   VertexArray array_;
   Buffer vertices_, indices_, instances_;
   GLsizei index_count_ = 0;
-  bool rod_;
+  Kind kind_;
 };
 
-/// The four shapes that figures are built of.
+/// The shapes that figures are built of.
 class PartShapes {
  public:
   PartShapes();
@@ -48,7 +49,7 @@ class PartShapes {
   void Draw(const Program& program, const scene::PartList& parts, bool coarse);
 
  private:
-  InstancedShape ball_, bead_, rod_, box_;
+  InstancedShape ball_, coarse_ball_, rod_, limb_, box_;
 };
 
 }  // namespace footing::render

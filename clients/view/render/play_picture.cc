@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "clients/view/render/hud/overlay.h"
+#include "clients/view/scene/live_keys.h"
+#include "clients/view/timeline/play_keys.h"
 
 namespace footing::render {
 namespace {
@@ -13,6 +15,23 @@ void MoveDrawn(ImDrawList& list, int from, ImVec2 by) {
     list.VtxBuffer[i].pos.x += by.x;
     list.VtxBuffer[i].pos.y += by.y;
   }
+}
+
+/// The keys of playback, with those of what is played.
+std::vector<scene::KeyLine> PlayKeyLines(const std::vector<PlayedView>& views) {
+  std::vector<scene::KeyLine> lines{{"?", "show or hide this list"},
+                                    {"H", "hide or show the panels"},
+                                    {"F11", "full screen, or a window again"}};
+  const bool person =
+      !views.empty() && scene::EngineOf(views.front().content.model) == scene::Engine::kPerson;
+  if (person) {
+    lines.push_back({"O", "the true pose beside the body, or over it"});
+  } else {
+    lines.push_back({"F", "force arrows at the feet"});
+  }
+  for (const auto& [key, what] : timeline::kPlayKeyHelp) lines.push_back({key, what});
+  lines.push_back({"Esc, Q", "quit"});
+  return lines;
 }
 
 }  // namespace
@@ -58,7 +77,7 @@ void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const Hu
     DrawTimeline(paint, TimelineBoxesOf(screen, width, height, line->lanes.size()), *line);
   }
   if (options.keys) {
-    DrawKeys(paint, {static_cast<float>(width), static_cast<float>(high)}, true);
+    DrawKeys(paint, {static_cast<float>(width), static_cast<float>(high)}, PlayKeyLines(views));
   }
   screen.EndPanels();
 }

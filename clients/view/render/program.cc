@@ -54,6 +54,9 @@ Program::~Program() {
 
 void Program::Set(const char* uniform, float value) const { glUniform1f(At(uniform), value); }
 void Program::Set(const char* uniform, int value) const { glUniform1i(At(uniform), value); }
+void Program::Set(const char* uniform, const Eigen::Vector2f& value) const {
+  glUniform2fv(At(uniform), 1, value.data());
+}
 void Program::Set(const char* uniform, const Eigen::Vector3f& value) const {
   glUniform3fv(At(uniform), 1, value.data());
 }

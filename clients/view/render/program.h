@@ -29,6 +29,7 @@ class Program {
   /// Sets a uniform of the program in use; a name that the driver optimised away is ignored.
   void Set(const char* uniform, float value) const;
   void Set(const char* uniform, int value) const;
+  void Set(const char* uniform, const Eigen::Vector2f& value) const;
   void Set(const char* uniform, const Eigen::Vector3f& value) const;
   void Set(const char* uniform, const Eigen::Matrix4f& value) const;
   void Set(const char* uniform, const std::vector<Eigen::Vector4f>& values) const;

@@ -34,6 +34,17 @@ vec4 ToScreen(vec3 colour) { return vec4(sqrt(colour / (1.0 + 0.10 * colour)), 1
 )";
 }
 
+std::string GrainText() {
+  return R"(
+vec4 WithGrain(vec4 colour) {
+  // A pattern of two by two pixels, which files of pictures hold in little space.
+  ivec2 at = ivec2(gl_FragCoord.xy) & 1;
+  float noise = 0.25 * float(2 * (at.x ^ at.y) + at.y) + 0.125;
+  return vec4(colour.rgb + (noise - 0.5) / 255.0, colour.a);
+}
+)";
+}
+
 namespace {
 
 std::string InstanceText() {
@@ -47,9 +58,12 @@ layout(location = 5) in vec4 a_place;
 layout(location = 6) in vec4 a_colour_taper;
 layout(location = 7) in vec4 a_under_gloss;
 vec3 WorldPosition() {
-  float narrower = mix(1.0, a_colour_taper.w, a_position.z);
-  vec3 p = u_is_rod != 0 ? vec3(a_position.xy * narrower, a_position.z) : a_position;
-  return (mat4(a_x, a_y, a_z, a_place) * vec4(p, 1.0)).xyz;
+  float narrower = u_kind != 0 ? mix(1.0, a_colour_taper.w, a_position.z) : 1.0;
+  vec3 p = vec3(a_position.xy * narrower, a_position.z);
+  vec3 world = (mat4(a_x, a_y, a_z, a_place) * vec4(p, 1.0)).xyz;
+  // The round end of a limb is as high as the limb is thick, whatever its length.
+  float bulge = u_kind == 2 ? a_normal.z * narrower * length(a_x.xyz) : 0.0;
+  return world + normalize(a_z.xyz) * bulge;
 }
 )";
 }
@@ -57,14 +71,18 @@ vec3 WorldPosition() {
 }  // namespace
 
 std::string PartVertexText() {
-  return SharedText() + "uniform int u_is_rod;\n" + InstanceText() + R"(
+  return SharedText() + "uniform int u_kind;\n" + InstanceText() + R"(
 out vec3 v_position;
 out vec3 v_normal;
 out vec3 v_colour;
 out float v_gloss;
 void main() {
   vec3 n = a_normal;
-  if (u_is_rod != 0 && n.z > -0.5) n.z = 1.0 - a_colour_taper.w;
+  if (u_kind == 1 && n.z > -0.5) n.z = 1.0 - a_colour_taper.w;
+  if (u_kind == 2) {
+    float across = max(length(n.xy), 0.001);
+    n.z = n.z * length(a_z.xyz) / length(a_x.xyz) + (1.0 - a_colour_taper.w) * across;
+  }
   // The columns are square to each other, so the inverse transpose is each over its square.
   v_normal = a_x.xyz * (n.x / dot(a_x.xyz, a_x.xyz)) + a_y.xyz * (n.y / dot(a_y.xyz, a_y.xyz)) +
              a_z.xyz * (n.z / dot(a_z.xyz, a_z.xyz));
@@ -118,7 +136,7 @@ void main() { o_colour = vec4(float(u_id) / 255.0, 0.0, 0.0, 1.0); }
 }
 
 std::string ShadowVertexText() {
-  return SharedText() + "uniform int u_is_rod;\n" + InstanceText() + R"(
+  return SharedText() + "uniform int u_kind;\n" + InstanceText() + R"(
 uniform vec3 u_centre;
 uniform float u_span;
 void main() {
@@ -147,10 +165,10 @@ void main() {
 }
 
 std::string SkyFragmentText() {
-  return SharedText() + R"(
+  return SharedText() + GrainText() + R"(
 in vec3 v_screen;
 out vec4 o_colour;
-void main() { o_colour = vec4(v_screen, 1.0); }
+void main() { o_colour = WithGrain(vec4(v_screen, 1.0)); }
 )";
 }
 

@@ -27,5 +27,8 @@ std::string SkyFragmentText();
 
 /// Shared by the texts above: version, frame uniforms, sky, fog, output.
 std::string SharedText();
+/// For fragment shaders of wide areas: a pattern of one step of eight bits, so that a slow change
+/// of tone shows no bands.
+std::string GrainText();
 
 }  // namespace footing::render

@@ -15,7 +15,8 @@ ShadowMap::ShadowMap() {
   glBindTexture(GL_TEXTURE_2D, texture_.name());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowPixels, kShadowPixels, 0, GL_RED, GL_UNSIGNED_BYTE,
                nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -41,6 +42,9 @@ void ShadowMap::Draw(const Program& program, PartShapes& shapes, const scene::Pa
   program.Set("u_centre", centre_m);
   program.Set("u_span", kMarkSpanM);
   shapes.Draw(program, figures, true);
+  // The mark's edge is soft: it is read from the smaller copies.
+  glBindTexture(GL_TEXTURE_2D, texture_.name());
+  glGenerateMipmap(GL_TEXTURE_2D);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }

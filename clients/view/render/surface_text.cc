@@ -5,7 +5,7 @@ namespace {
 
 /// Plain light on the ground; what the birds cast on it is drawn over it, where they are.
 std::string SurfaceSharedText() {
-  return SharedText() + R"(
+  return SharedText() + GrainText() + R"(
 in vec3 v_position;
 in float v_sun;
 out vec4 o_colour;
@@ -57,9 +57,10 @@ void main() {
 )";
 }
 
-std::string SurfaceFragmentText(bool ribbon) {
-  if (!ribbon) {
-    return SurfaceSharedText() + R"(
+namespace {
+
+std::string GroundFragmentText() {
+  return SurfaceSharedText() + R"(
 uniform int u_studio;
 // A light floor with a line every half metre, stronger every two.
 vec3 Studio(vec2 p, vec2 pixel) {
@@ -74,7 +75,7 @@ void main() {
   vec2 p = v_position.xy;
   vec2 pixel = fwidth(p) + 1e-5;
   if (u_studio != 0) {
-    o_colour = ToScreen(Lit(Studio(p, pixel)));
+    o_colour = WithGrain(ToScreen(Lit(Studio(p, pixel))));
     return;
   }
   // Mown in stripes 5 m wide.
@@ -84,12 +85,15 @@ void main() {
   vec2 small = AwayFromLines(p, 1.0), large = AwayFromLines(p, 5.0);
   float grid = max(Line(small.x, 0.01, pixel.x), Line(small.y, 0.01, pixel.y)) * 0.25;
   grid = max(grid, max(Line(large.x, 0.022, pixel.x), Line(large.y, 0.022, pixel.y)) * 0.5);
-  o_colour = ToScreen(Lit(mix(colour, vec3(0.52, 0.64, 0.36), grid)));
+  o_colour = WithGrain(ToScreen(Lit(mix(colour, vec3(0.52, 0.64, 0.36), grid))));
 }
 )";
-  }
+}
+
+std::string RibbonFragmentText() {
   return SurfaceSharedText() + R"(
 in vec4 v_track;
+uniform vec2 u_fade;  // Along the track: from where to where it fades away; equal: it does not.
 vec3 Clay() {
   float along = v_track.x, aside = v_track.y, half_width = v_track.z;
   float pixel_along = fwidth(along) + 1e-5, pixel_aside = fwidth(aside) + 1e-5;
@@ -112,9 +116,16 @@ void main() {
   colour = kind > 1.5 ? vec3(0.210, 0.068, 0.035) : colour;
   colour = kind > 2.5 ? vec3(0.86, 0.84, 0.80) : colour;
   colour = kind > 3.5 ? vec3(0.90, 0.62, 0.05) : colour;
-  o_colour = ToScreen(Lit(colour));
+  o_colour = WithGrain(ToScreen(Lit(colour)));
+  if (u_fade.y > u_fade.x) o_colour.a = 1.0 - smoothstep(u_fade.x, u_fade.y, v_track.x);
 }
 )";
+}
+
+}  // namespace
+
+std::string SurfaceFragmentText(bool ribbon) {
+  return ribbon ? RibbonFragmentText() : GroundFragmentText();
 }
 
 std::string MarkVertexText() {
@@ -128,7 +139,7 @@ void main() {
   vec2 corner = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID >> 1) * 2 - 1);
   v_at = 0.5 + 0.5 * corner;
   vec2 away = 0.5 * u_span * corner;
-  v_position = u_centre + vec3(away, dot(away, u_slope.xy) + 0.004);
+  v_position = u_centre + vec3(away, dot(away, u_slope.xy) + 0.009);  // Over the paint.
   gl_Position = u_clip_from_world * vec4(v_position, 1.0);
 }
 )";
@@ -152,10 +163,11 @@ void main() {
   float shadow = 0.0;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
-      shadow += textureLod(u_shadow, v_at + 0.0095 * vec2(x, y), 0.0).r;
+      float weight = (2.0 - abs(float(x))) * (2.0 - abs(float(y)));
+      shadow += weight * textureLod(u_shadow, v_at + 0.0095 * vec2(x, y), 2.3).r;
     }
   }
-  float light = 1.0 - 0.56 * shadow / 9.0;
+  float light = 1.0 - 0.56 * shadow / 16.0;
   for (int i = 0; i < u_blob_count; ++i) {
     vec2 away = (v_position.xy - u_blobs[i].xy) / u_blobs[i].z;
     light *= 1.0 - u_blobs[i].w * exp(-2.2 * dot(away, away));

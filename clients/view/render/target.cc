@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace footing::render {
 namespace {
@@ -26,16 +27,20 @@ Target::Target(int width, int height, int samples)
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.name());
 }
 
-Result<Target> Target::Create(int width, int height, int samples) {
+Result<Target> Target::Create(int width, int height, std::optional<int> samples) {
   if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels) {
     return UsageError("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
                       " pixels: allowed is 1 to " + std::to_string(kMaxPixels) + " each way");
   }
-  Target target(width, height, samples);
+  if (!samples) {
+    auto smooth = Create(width, height, kSamples);
+    return smooth ? std::move(smooth) : Create(width, height, 0);
+  }
+  Target target(width, height, *samples);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     return Failure("the graphics driver gives no picture of " + std::to_string(width) + " x " +
-                   std::to_string(height) + " pixels with " + std::to_string(samples) +
-                   " samples; try without --msaa");
+                   std::to_string(height) + " pixels with " + std::to_string(*samples) +
+                   " samples; try a smaller --msaa");
   }
   return target;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "clients/view/render/handles.h"
 #include "clients/view/render/image.h"
 #include "common/result/result.h"
@@ -10,8 +12,10 @@ namespace footing::render {
 /// multisampling.
 class Target {
  public:
-  /// `samples` 0 is without multisampling.
-  static Result<Target> Create(int width, int height, int samples);
+  /// `samples` 0 is without multisampling. Without a number it is as smooth as the driver allows,
+  /// at most kSamples.
+  static Result<Target> Create(int width, int height, std::optional<int> samples);
+  static constexpr int kSamples = 4;
 
   void Bind() const { glBindFramebuffer(GL_FRAMEBUFFER, drawn_.name()); }
   /// The pixels drawn so far.
@@ -19,6 +23,7 @@ class Target {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  int samples() const { return samples_; }
 
  private:
   Target(int width, int height, int samples);

@@ -134,21 +134,28 @@ void World::DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
   }
 }
 
-void World::DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world) {
-  const Eigen::Vector3f eye = picture.camera.eye_m.cast<float>();
-  for (const Program* program : {&programs_.ribbon, &programs_.ground}) {
-    program->Use();
-    program->Set("u_clip_from_world", clip_from_world);
-    program->Set("u_eye", eye);
-    if (program == &programs_.ribbon) {
-      if (!track_.empty()) track_.Draw();
-    } else {
-      program->Set("u_ground", picture.ground_m);
-      program->Set("u_studio", picture.studio ? 1 : 0);
-      glBindVertexArray(nothing_.name());
-      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    }
-  }
+void World::DrawTrack(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world) {
+  if (track_.empty()) return;
+  const Program& program = programs_.ribbon;
+  program.Use();
+  program.Set("u_clip_from_world", clip_from_world);
+  program.Set("u_eye", Eigen::Vector3f(picture.camera.eye_m.cast<float>()));
+  program.Set("u_fade", Eigen::Vector2f(fade_.from_m, fade_.to_m));
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  if (Fades()) glEnable(GL_BLEND);
+  track_.Draw();
+  glDisable(GL_BLEND);
+}
+
+void World::DrawGround(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world) {
+  const Program& program = programs_.ground;
+  program.Use();
+  program.Set("u_clip_from_world", clip_from_world);
+  program.Set("u_eye", Eigen::Vector3f(picture.camera.eye_m.cast<float>()));
+  program.Set("u_ground", picture.ground_m);
+  program.Set("u_studio", picture.studio ? 1 : 0);
+  glBindVertexArray(nothing_.name());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
 void World::Draw(const scene::Picture& picture, const stream::Track& track,
@@ -156,6 +163,7 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   if (track_version != track_version_) {
     track_version_ = track_version;
     track_.Upload(scene::BuildRibbon(track));
+    fade_ = scene::FadeOf(track);
   }
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
@@ -177,7 +185,10 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   programs_.part.Set("u_lamp", picture.studio ? kStudioLamp : 0.0f);
   shapes_.Draw(programs_.part, picture.figures, false);
   shapes_.Draw(programs_.part, picture.forces, true);
-  DrawSurfaces(picture, clip_from_world);
+  // A track that fades shows the ground behind it.
+  if (!Fades()) DrawTrack(picture, clip_from_world);
+  DrawGround(picture, clip_from_world);
+  if (Fades()) DrawTrack(picture, clip_from_world);
   DrawSky(eye, clip_from_world);
   DrawMarks(picture, eye, clip_from_world);
   programs_.part.Use();

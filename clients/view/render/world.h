@@ -6,6 +6,7 @@
 #include "clients/view/render/mesh_buffers.h"
 #include "clients/view/render/program.h"
 #include "clients/view/render/shadow_map.h"
+#include "clients/view/scene/course.h"
 #include "clients/view/scene/stage.h"
 #include "common/result/result.h"
 
@@ -31,7 +32,9 @@ class World {
   explicit World(Programs programs);
   void DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
                  const Eigen::Matrix4f& clip_from_world);
-  void DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
+  bool Fades() const { return fade_.to_m > fade_.from_m; }
+  void DrawTrack(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
+  void DrawGround(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
   /// One sees through them, but never into them; `opacity` 0 to 1.
   void DrawGhosts(const scene::PartList& parts, float opacity);
   /// They show through what is before them, faintly.
@@ -42,6 +45,7 @@ class World {
   Programs programs_;
   PartShapes shapes_;
   StaticMesh track_, sky_;
+  scene::Fade fade_;
   std::uint64_t track_version_ = 0;
   VertexArray nothing_;  // For shapes that the vertex shader generates.
   ShadowMap shadow_map_;

@@ -97,7 +97,7 @@ void AddLeg(const CharacterPose& pose, int hip_link, int foot_contact, double to
   // The drumstick ends in feathers; below them is bare skin.
   const Vector3f hock = a + 0.72f * (b - a);
   const Vector3f calf = a + 0.30f * (b - a);
-  parts.AddLimb(a, calf, 0.118f, 0.098f, plumage.tail, 0.12f, true);
+  parts.AddLimb(a, calf, 0.118f, 0.098f, plumage.tail, 0.12f);
   parts.AddLimb(calf, hock, 0.098f, 0.040f, plumage.tail, 0.12f);
   parts.AddLimb(hock, b, 0.034f, 0.036f, plumage.skin, 0.25f);
   parts.AddLimb(b, c, 0.034f, 0.024f, plumage.skin, 0.25f);

@@ -37,7 +37,7 @@ void AddNeck(const Vector3f& base, const Vector3f& base_forward, const Vector3f&
     const Vector3f at =
         s * s * s * base + 3 * s * s * t * bend + 3 * s * t * t * nape + t * t * t * head;
     const float radius = 0.056f + 0.084f * s * s;
-    parts.AddLimb(before, at, radius_before, radius, plumage.back, 0.12f, piece == 1);
+    parts.AddLimb(before, at, radius_before, radius, plumage.back, 0.12f);
     before = at;
     radius_before = radius;
   }

@@ -29,6 +29,13 @@ constexpr double kTargetHeightM = 0.75;
 constexpr double kFollowS = 1.0;
 constexpr double kNearBoardsM = 0.6;  // So far the camera does not move.
 
+constexpr double kDragRad = kPi;  // A drag over the picture's height turns the view so far.
+constexpr double kHighestEyeRad = DegreesToRadians(80);
+constexpr double kLowestEyeM = 0.6;  // Below the pivot, which is at the hips.
+constexpr double kNotch = 1.12;
+constexpr double kNearest = 0.25, kFarthest = 6;
+constexpr double kDoubleClickS = 0.3, kDoubleClickAway = 0.01;
+
 }  // namespace
 
 Eigen::Matrix4f Camera::View() const {
@@ -97,6 +104,7 @@ Camera ChaseCamera::Look() const {
   const Eigen::Vector3d left(-forward.y(), forward.x(), 0);
   const Eigen::Vector3d at_m(x_.value, y_.value, height_.value);
   Camera camera;
+  camera.pivot_m = at_m;
   camera.eye_m = at_m - kBehindM * forward + kSidewaysM * left + Eigen::Vector3d(0, 0, kAboveM);
   // The middle between straight ahead and past the bird: it stays near the picture's middle.
   const Eigen::Vector3d past = (kBehindM * forward - kSidewaysM * left).normalized();
@@ -123,6 +131,50 @@ Camera FrontCamera::Look() const {
   camera.eye_m = {middle_m_.x() + distance_m_ * std::cos(kSideRad),
                   middle_m_.y() + distance_m_ * std::sin(kSideRad), kEyeHeightM};
   return camera;
+}
+
+Camera Orbited(const Camera& camera, const Orbit& orbit) {
+  const Eigen::Vector3d pivot_m = camera.pivot_m.value_or(camera.target_m);
+  const Eigen::Vector3d eye_m = camera.eye_m - pivot_m;
+  const double distance_m = orbit.distance * eye_m.norm();
+  const double level_m = eye_m.head<2>().norm();
+  if (level_m < 1e-6 || distance_m < 1e-6) return camera;
+  const double before_rad = std::atan2(eye_m.z(), level_m);
+  // Where the view itself is lower or higher than a person may turn it, it stays so.
+  const double lowest_rad =
+      std::min(before_rad, -std::asin(std::min(1.0, kLowestEyeM / distance_m)));
+  const double highest_rad = std::max(before_rad, kHighestEyeRad);
+  const double after_rad = std::clamp(before_rad + orbit.elevation_rad, lowest_rad, highest_rad);
+  // Upwards around the axis that is to the right of the eye's direction, then around the vertical.
+  const Eigen::Vector3d right(-eye_m.y() / level_m, eye_m.x() / level_m, 0);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(orbit.azimuth_rad, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(before_rad - after_rad, right));
+  Camera turned = camera;
+  turned.eye_m = pivot_m + turn * (orbit.distance * eye_m);
+  turned.target_m = pivot_m + turn * (orbit.distance * (camera.target_m - pivot_m));
+  return turned;
+}
+
+void MouseOrbit::Press(const Eigen::Vector2d& at, double time_s) {
+  const bool again = pressed_s_ && time_s - *pressed_s_ <= kDoubleClickS &&
+                     (at - pressed_).norm() <= kDoubleClickAway;
+  if (again) Reset();
+  pressed_s_ = again ? std::nullopt : std::optional(time_s);
+  pressed_ = last_ = at;
+  dragging_ = !again;
+}
+
+void MouseOrbit::Move(const Eigen::Vector2d& at) {
+  if (!dragging_) return;
+  const Eigen::Vector2d moved = at - last_;
+  last_ = at;
+  // The world follows the hand: to the right, the eye goes to the left around it.
+  orbit_.azimuth_rad = WrapAngle(orbit_.azimuth_rad - kDragRad * moved.x());
+  orbit_.elevation_rad = std::clamp(orbit_.elevation_rad + kDragRad * moved.y(), -kPi / 2, kPi / 2);
+}
+
+void MouseOrbit::Scroll(double notches) {
+  orbit_.distance = std::clamp(orbit_.distance * std::pow(kNotch, -notches), kNearest, kFarthest);
 }
 
 }  // namespace footing::scene

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 
 namespace footing::scene {
 
@@ -10,6 +11,8 @@ struct Camera {
   Eigen::Vector3d target_m = Eigen::Vector3d(1, 0, 0);
   double vertical_field_rad = 0.80;
   double roll_rad = 0;  ///< Of the picture, clockwise positive.
+  /// What a person's turns of the view go around; nothing: the target.
+  std::optional<Eigen::Vector3d> pivot_m;
 
   /// World to camera: x right, y up, looking along -z. Without a roll the horizon is level.
   Eigen::Matrix4f View() const;
@@ -65,6 +68,38 @@ class FrontCamera {
   bool placed_ = false;
   Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();
   double distance_m_ = 0;
+};
+
+/// How a person has turned and zoomed the view with the mouse; as it is made, not at all.
+struct Orbit {
+  double azimuth_rad = 0;    ///< Of the eye around the pivot, counter-clockwise from above.
+  double elevation_rad = 0;  ///< Of the eye, upwards.
+  double distance = 1;       ///< Factor of the eye's distance from the pivot.
+};
+
+/// The view turned around its pivot, which stays where it is in the picture. The eye stays above
+/// the ground and never quite overhead.
+Camera Orbited(const Camera& camera, const Orbit& orbit);
+
+/// Turns presses, moves and the wheel of a mouse into an orbit. Positions are in heights of the
+/// picture, y down.
+class MouseOrbit {
+ public:
+  /// A press of the left button; the second one within 0.3 s at one place resets the view.
+  void Press(const Eigen::Vector2d& at, double time_s);
+  void Release() { dragging_ = false; }
+  void Move(const Eigen::Vector2d& at);
+  /// Notches of the wheel, positive away from the person: nearer.
+  void Scroll(double notches);
+  void Reset() { orbit_ = {}; }
+  const Orbit& orbit() const { return orbit_; }
+
+ private:
+  Orbit orbit_;
+  bool dragging_ = false;
+  Eigen::Vector2d last_ = Eigen::Vector2d::Zero();
+  std::optional<double> pressed_s_;
+  Eigen::Vector2d pressed_ = Eigen::Vector2d::Zero();
 };
 
 /// Where a second figure stands beside the first one: on the floor, not on boards.

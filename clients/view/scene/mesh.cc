@@ -78,4 +78,19 @@ Mesh UnitRod(int slices) {
   return mesh;
 }
 
+Mesh UnitLimb(int slices, int stacks) {
+  Mesh mesh;
+  for (int ring = 0; ring <= 2 * stacks + 1; ++ring) {
+    const bool second = ring > stacks;
+    const int stack = second ? ring - 1 : ring;  // The equator is there twice, once for each end.
+    const float angle = static_cast<float>(kPi) * static_cast<float>(stack) / (2 * stacks);
+    for (int slice = 0; slice <= slices; ++slice) {
+      const Eigen::Vector3f n = OnCircle(slice, slices, std::sin(angle), -std::cos(angle));
+      mesh.vertices.push_back({{n.x(), n.y(), second ? 1.0f : 0.0f}, n});
+    }
+    if (ring > 0) JoinRings((ring - 1) * (slices + 1), ring * (slices + 1), slices, mesh.indices);
+  }
+  return mesh;
+}
+
 }  // namespace footing::scene

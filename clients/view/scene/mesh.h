@@ -27,4 +27,9 @@ Mesh UnitBox();
 /// closed. The renderer tapers its top.
 Mesh UnitRod(int slices);
 
+/// A rod with round ends: two half spheres of radius 1 about z, joined by a side. The z of a vertex
+/// is 0 at the first end and 1 at the second one; its normal says where on the half sphere it lies.
+/// The renderer gives the ends their radii and the rod its length. `stacks` is of one half sphere.
+Mesh UnitLimb(int slices, int stacks);
+
 }  // namespace footing::scene

@@ -59,15 +59,24 @@ void PartList::AddDisc(const Eigen::Vector3f& centre, const Eigen::Vector2f& hal
 }
 
 void PartList::AddLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a,
-                       float radius_b, const Colour& colour, float gloss, bool round_start) {
-  AddRod(a, b, radius_a, radius_b, colour, gloss);
-  const Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();
-  const auto bead = [&](const Eigen::Vector3f& at, float radius) {
-    beads.push_back(
-        {Ellipsoid(at, axes, Eigen::Vector3f::Constant(radius)), colour, 1, colour, gloss});
-  };
-  if (round_start) bead(a, radius_a);
-  bead(b, radius_b);
+                       float radius_b, const Colour& colour, float gloss) {
+  const float length = (b - a).norm();
+  if (length < kShortestM) return;
+  const Eigen::Matrix4f X = Ellipsoid(a, AxesAlong(b - a), {radius_a, radius_a, length});
+  limbs.push_back({X, colour, radius_b / radius_a, colour, gloss});
+}
+
+void PartList::AddOvalLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                           const Eigen::Vector3f& x_axis, float radius_a, float radius_b,
+                           float oval, const Colour& colour, float gloss) {
+  const float length = (b - a).norm();
+  if (length < kShortestM) return;
+  Eigen::Matrix3f axes;
+  axes.col(2) = (b - a) / length;
+  axes.col(1) = axes.col(2).cross(x_axis).normalized();
+  axes.col(0) = axes.col(1).cross(axes.col(2));
+  const Eigen::Matrix4f X = Ellipsoid(a, axes, {radius_a, oval * radius_a, length});
+  limbs.push_back({X, colour, radius_b / radius_a, colour, gloss});
 }
 
 Colour Rgb(std::uint32_t hex) {

@@ -30,14 +30,19 @@ struct Part {
 /// Everything of one id, by shape.
 struct PartList {
   std::vector<Part> balls;
-  std::vector<Part> beads;  ///< Small balls, drawn with fewer triangles.
   std::vector<Part> rods;
+  std::vector<Part> limbs;  ///< Rods with round ends.
   std::vector<Part> boxes;  ///< Unit cubes about the origin: sides of 1.
 
   void AddBall(const Eigen::Matrix4f& X_WP, const Colour& colour, const Colour& under, float gloss);
-  /// A rod from a to b with a rounded end at b; `round_start` rounds the one at a, too.
+  /// A rod from a to b with round ends: limbs that share an end and its radius meet without a seam.
   void AddLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a, float radius_b,
-               const Colour& colour, float gloss = 0.1f, bool round_start = false);
+               const Colour& colour, float gloss = 0.1f);
+  /// A limb that is oval across: the radii are along `x_axis`, which is made square to a-b, and
+  /// `oval` times as large across it.
+  void AddOvalLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                   const Eigen::Vector3f& x_axis, float radius_a, float radius_b, float oval,
+                   const Colour& colour, float gloss = 0.1f);
   /// A rod from a to b with flat ends; radius_b = 0 makes a cone.
   void AddRod(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a, float radius_b,
               const Colour& colour, float gloss = 0.1f);

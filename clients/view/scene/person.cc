@@ -14,6 +14,38 @@ constexpr double kThighAndShankOfHeight = 0.49;  // common/body/segments.h
 constexpr double kSureSdM = 0.06;                // As good as it gets: not coloured.
 constexpr double kLostSdM = 0.35;                // As red as it gets.
 
+/// Half the depth of a trunk over the standing height, by the share of the way from the hips to the
+/// neck; its width is kTrunkOval times as much.
+constexpr std::array<std::array<double, 2>, 8> kTrunkDepths{{{-0.10, 0.046},
+                                                             {0.05, 0.061},
+                                                             {0.28, 0.056},
+                                                             {0.48, 0.059},
+                                                             {0.66, 0.064},
+                                                             {0.80, 0.064},
+                                                             {0.92, 0.060},
+                                                             {1.00, 0.052}}};
+constexpr float kTrunkOval = 1.42f;
+constexpr int kTrunkPieces = 10;
+
+/// The depths joined by a curve without kinks: a cubic between each two, whose slope at each is
+/// that between its neighbours (Catmull and Rom).
+float TrunkDepth(double share) {
+  std::size_t i = 1;
+  while (i + 1 < kTrunkDepths.size() && share > kTrunkDepths[i][0]) ++i;
+  const auto& a = kTrunkDepths[i - 1];
+  const auto& b = kTrunkDepths[i];
+  const auto slope = [](std::size_t at) {
+    const auto& before = kTrunkDepths[at > 0 ? at - 1 : at];
+    const auto& after = kTrunkDepths[std::min(at + 1, kTrunkDepths.size() - 1)];
+    return (after[1] - before[1]) / (after[0] - before[0]);
+  };
+  const double width = b[0] - a[0], t = std::clamp((share - a[0]) / width, 0.0, 1.0);
+  const double t2 = t * t, t3 = t2 * t;
+  return static_cast<float>((2 * t3 - 3 * t2 + 1) * a[1] +
+                            (t3 - 2 * t2 + t) * width * slope(i - 1) + (3 * t2 - 2 * t3) * b[1] +
+                            (t3 - t2) * width * slope(i));
+}
+
 /// One figure being built. Sizes in the functions below are over the standing height, by eye.
 class Mannequin {
  public:
@@ -70,19 +102,26 @@ class Mannequin {
   }
   void Limb(const Vector3f& a, const Vector3f& b, float radius_a, float radius_b,
             const Colour& colour) {
-    parts_.AddLimb(a, b, height_ * radius_a, height_ * radius_b, colour, 0.12f, true);
+    parts_.AddLimb(a, b, height_ * radius_a, height_ * radius_b, colour, 0.12f);
   }
 
+  /// One piece of trunk after the other, each as wide as the next one begins: no seam.
   void AddTrunk() {
     const Vector3f up = neck_ - hips_;
-    Ball(hips_ + 0.07f * up, pelvis_, {0.060f, 0.088f, 0.058f}, look_.trousers);
-    const Matrix3f waist = Frame(pelvis_.col(1) + chest_.col(1), up);
-    Ball(hips_ + 0.30f * up, waist, {0.057f, 0.080f, 0.105f}, look_.shirt);
-    Ball(hips_ + 0.50f * up, waist, {0.060f, 0.083f, 0.110f}, look_.shirt);
-    Ball(hips_ + 0.68f * up, chest_, {0.066f, 0.091f, 0.108f}, look_.shirt);
-    const Vector3f shoulders = 0.5f * (At(Landmark::kLeftShoulder) + At(Landmark::kRightShoulder));
-    Ball(shoulders - 0.028f * height_ * chest_.col(2), chest_, {0.052f, 0.100f, 0.052f},
-         look_.shirt);
+    const auto add = [&](double from, double to, float wider, const Colour& colour) {
+      for (int piece = 0; piece < kTrunkPieces; ++piece) {
+        const double low = from + (to - from) * piece / kTrunkPieces;
+        const double high = from + (to - from) * (piece + 1) / kTrunkPieces;
+        const auto middle = static_cast<float>(std::clamp((low + high) / 2, 0.0, 1.0));
+        const Vector3f ahead = (1 - middle) * pelvis_.col(0) + middle * chest_.col(0);
+        parts_.AddOvalLimb(hips_ + static_cast<float>(low) * up,
+                           hips_ + static_cast<float>(high) * up, ahead,
+                           height_ * wider * TrunkDepth(low), height_ * wider * TrunkDepth(high),
+                           kTrunkOval, colour, 0.12f);
+      }
+    };
+    add(-0.06, 0.13, 1.03f, look_.trousers);
+    add(0.08, 0.97, 1, look_.shirt);
   }
 
   void AddHead() {
@@ -103,9 +142,9 @@ class Mannequin {
               Landmark hand_end) {
     const Vector3f s = At(shoulder), e = At(elbow), w = At(wrist);
     const Vector3f root = Has(clavicle) ? At(clavicle) : neck_;
-    Limb(root + 0.35f * (s - root), s, 0.036f, 0.036f, look_.shirt);
-    Limb(neck_ + 0.004f * height_ * chest_.col(2), s, 0.028f, 0.034f, look_.shirt);
-    Limb(s, s + 0.55f * (e - s), 0.035f, 0.029f, look_.shirt);
+    Limb(root + 0.35f * (s - root), s, 0.040f, 0.036f, look_.shirt);
+    Limb(neck_ + 0.004f * height_ * chest_.col(2), s, 0.028f, 0.036f, look_.shirt);
+    Limb(s, s + 0.55f * (e - s), 0.036f, 0.029f, look_.shirt);
     Limb(s + 0.55f * (e - s), e, 0.026f, 0.023f, Sure(look_.skin, elbow));
     Limb(e, e + 0.3f * (w - e), 0.023f, 0.024f, Sure(look_.skin, elbow));
     Limb(e + 0.3f * (w - e), w, 0.024f, 0.016f, Sure(look_.skin, wrist));
@@ -188,7 +227,7 @@ void AddLimbs(const std::vector<int>& parents, const std::vector<float>& radii_m
     if (parent < 0 || parent >= static_cast<int>(i)) continue;
     const auto from = static_cast<std::size_t>(parent);
     parts.AddLimb(p_m[from].cast<float>(), p_m[i].cast<float>(), radius_at(from), radius_at(i),
-                  colour, 0.1f, true);
+                  colour, 0.1f);
   }
 }
 

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include "clients/view/scene/course.h"
 #include "clients/view/scene/digits.h"
-#include "common/units/units.h"
 
 namespace footing::scene {
 namespace {
 
-constexpr std::size_t kMaxSegments = 2000;
-constexpr float kPitDepthM = 0.6f;
-constexpr float kBelowM = 0.03f;  // The ground lies this far under the lowest corner.
 constexpr double kNumberEveryM = 10;
 constexpr float kNumberHeightM = 0.5f;
 constexpr float kPaintM = 0.004f;
@@ -45,25 +43,6 @@ struct SegmentFrame {
   }
 };
 
-/// How far a segment's edges run back or on, per metre to the left of the centre line: where the
-/// track turns, both segments end on the line that halves the turn.
-struct Mitre {
-  double start = 0;  ///< Along offset of the start, over sideways.
-  double end = 0;    ///< The same of the end, which runs on.
-};
-
-Mitre MitreOf(const stream::Track& track, std::size_t i) {
-  const auto half_turn = [&](std::size_t before, std::size_t after) {
-    const double turn_rad =
-        WrapAngle(track.segments[after].heading_rad - track.segments[before].heading_rad);
-    return std::tan(turn_rad / 2);
-  };
-  Mitre mitre;
-  if (i > 0) mitre.start = half_turn(i - 1, i);
-  if (i + 1 < track.segments.size()) mitre.end = -half_turn(i, i + 1);
-  return mitre;
-}
-
 class Painter {
  public:
   explicit Painter(RibbonMesh& mesh) : mesh_(mesh) {}
@@ -80,35 +59,49 @@ class Painter {
     Face(first);
   }
 
-  /// The whole face of a segment, with mitred ends.
-  void Face(const SegmentFrame& frame, float from_m, const Mitre& mitre, float up_m, Kind kind) {
+  /// The floor of a pit, with mitred ends.
+  void Pit(const SegmentFrame& frame, float from_m, const Mitre& mitre) {
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     const float w = frame.half_width;
     for (const Eigen::Vector2f& p :
          {StartAt(mitre, -w), EndAt(frame, mitre, -w), EndAt(frame, mitre, w), StartAt(mitre, w)}) {
-      mesh_.vertices.push_back({frame.At(p.x(), p.y(), up_m), frame.up, from_m + p.x(), p.y(), w,
-                                static_cast<float>(kind)});
+      mesh_.vertices.push_back({frame.At(p.x(), p.y(), -kPitDepthM), frame.up, from_m + p.x(),
+                                p.y(), w, static_cast<float>(kPit)});
     }
     Face(first);
   }
 
-  void Walls(const SegmentFrame& frame, const Mitre& mitre, float ground) {
-    const float w = frame.half_width;
-    const auto at = [&frame](const Eigen::Vector2f& p) { return frame.At(p.x(), p.y(), 0); };
-    const Eigen::Vector3f a = at(StartAt(mitre, -w)), b = at(EndAt(frame, mitre, -w));
-    const Eigen::Vector3f c = at(EndAt(frame, mitre, w)), d = at(StartAt(mitre, w));
-    Wall(a, b, ground);
-    Wall(c, d, ground);
-    Wall(d, a, ground);
-    Wall(b, c, ground);
+  /// The surface between two stations, and its walls down to the ground.
+  void Piece(const Station& a, const Station& b, float ground) {
+    const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+    for (const auto& [station, side] :
+         {std::pair(&a, -1.0f), {&b, -1.0f}, {&b, 1.0f}, {&a, 1.0f}}) {
+      mesh_.vertices.push_back({station->Edge(side), station->up, station->along_m,
+                                side * station->half_width, station->half_width,
+                                static_cast<float>(kSurface)});
+    }
+    Face(first);
+    Wall(a.Edge(-1), b.Edge(-1), ground, a.along_m, b.along_m);
+    Wall(b.Edge(1), a.Edge(1), ground, b.along_m, a.along_m);
+  }
+
+  /// A stretch of surface without a gap, with walls around it.
+  void Run(const std::vector<Station>& run, float ground) {
+    for (std::size_t i = 1; i < run.size(); ++i) Piece(run[i - 1], run[i], ground);
+    const Station &first = run.front(), &last = run.back();
+    Wall(first.Edge(1), first.Edge(-1), ground, first.along_m, first.along_m);
+    Wall(last.Edge(-1), last.Edge(1), ground, last.along_m, last.along_m);
   }
 
   /// From an upper edge a-b straight down to height `ground`.
-  void Wall(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float ground) {
+  void Wall(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float ground, float along_a,
+            float along_b) {
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     const Eigen::Vector3f normal = (a - b).cross(Eigen::Vector3f::UnitZ()).normalized();
-    for (const Eigen::Vector3f& p : {a, b}) Corner(p, normal);
-    for (const Eigen::Vector3f& p : {b, a}) Corner({p.x(), p.y(), ground}, normal);
+    Corner(a, normal, along_a);
+    Corner(b, normal, along_b);
+    Corner({b.x(), b.y(), ground}, normal, along_b);
+    Corner({a.x(), a.y(), ground}, normal, along_a);
     Face(first);
   }
 
@@ -119,8 +112,8 @@ class Painter {
   static Eigen::Vector2f EndAt(const SegmentFrame& frame, const Mitre& mitre, float left_m) {
     return {frame.length + left_m * static_cast<float>(mitre.end), left_m};
   }
-  void Corner(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) {
-    mesh_.vertices.push_back({p, normal, 0, 0, 1, static_cast<float>(kSide)});
+  void Corner(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, float along_m) {
+    mesh_.vertices.push_back({p, normal, along_m, 0, 1, static_cast<float>(kSide)});
   }
   void Face(std::uint32_t first) {
     mesh_.indices.insert(mesh_.indices.end(),
@@ -194,49 +187,21 @@ RibbonMesh BuildRibbon(const stream::Track& track) {
   RibbonMesh mesh;
   Painter painter(mesh);
   const auto ground = static_cast<float>(GroundHeight(track)) - 0.05f;
+  for (const std::vector<Station>& run : RunsOf(track)) painter.Run(run, ground);
   double from_m = track.first_m;
-  const std::size_t count = std::min(track.segments.size(), kMaxSegments);
+  const std::size_t count = std::min(track.segments.size(), kMostSegments);
   for (std::size_t i = 0; i < count; ++i) {
     const stream::TrackSegment& segment = track.segments[i];
     const SegmentFrame frame(segment);
-    const Mitre mitre = MitreOf(track, i);
-    painter.Face(frame, static_cast<float>(from_m), mitre, segment.pit ? -kPitDepthM : 0,
-                 segment.pit ? kPit : kSurface);
-    if (!segment.pit) {
-      painter.Walls(frame, mitre, ground);
+    if (segment.pit) {
+      painter.Pit(frame, static_cast<float>(from_m), MitreOf(track, i));
+    } else {
       PaintNumbers(painter, frame, from_m);
       PaintLines(painter, track, frame, from_m);
     }
     from_m += segment.length_m;
   }
   return mesh;
-}
-
-double HeightAt(const stream::Track& track, const Eigen::Vector2d& p_m, double ground_m) {
-  for (std::size_t i = 0; i < track.segments.size(); ++i) {
-    const stream::TrackSegment& segment = track.segments[i];
-    const Mitre mitre = MitreOf(track, i);
-    const Eigen::Vector2d forward(std::cos(segment.heading_rad), std::sin(segment.heading_rad));
-    const Eigen::Vector2d from_start = p_m - segment.start_m.head<2>();
-    const double along_m = from_start.dot(forward);
-    const double sideways_m = forward.x() * from_start.y() - forward.y() * from_start.x();
-    const double length_m = segment.length_m * std::cos(segment.slope_rad);
-    if (along_m < mitre.start * sideways_m || along_m > length_m + mitre.end * sideways_m) continue;
-    if (std::abs(sideways_m) > segment.width_m / 2 || segment.pit) continue;
-    return segment.start_m.z() + along_m * std::tan(segment.slope_rad);
-  }
-  return ground_m;
-}
-
-double GroundHeight(const stream::Track& track) {
-  if (track.segments.empty()) return 0;
-  double lowest_m = track.segments.front().start_m.z();
-  for (const stream::TrackSegment& segment : track.segments) {
-    const double end_m = segment.start_m.z() + segment.length_m * std::sin(segment.slope_rad);
-    const double floor_m = segment.pit ? static_cast<double>(kPitDepthM) : 0;
-    lowest_m = std::min({lowest_m, segment.start_m.z() - floor_m, end_m - floor_m});
-  }
-  return lowest_m - static_cast<double>(kBelowM);
 }
 
 }  // namespace footing::scene

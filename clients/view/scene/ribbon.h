@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/stream/character.h"
+#include "clients/view/scene/course.h"
 
 namespace footing::scene {
 
@@ -25,13 +25,8 @@ struct RibbonMesh {
 
 /// The track as triangles: top faces, pits as sunken dark floors, the sides down to the ground,
 /// the distance painted on every tenth metre, and the lines of a trial: start, finish, mark and,
-/// where a track has tasks, the middle. At most 2000 segments are drawn.
+/// where a track has tasks, the middle. At most kMostSegments are drawn. Bends are drawn as curves,
+/// at most 1 m to either side of each joint. An endless track goes on for its fade.
 RibbonMesh BuildRibbon(const stream::Track& track);
-
-/// Height of the track under a point; `ground_m` beside it and in pits.
-double HeightAt(const stream::Track& track, const Eigen::Vector2d& p_m, double ground_m);
-
-/// Height of the ground around the track: just below its lowest corner; 0 without a track.
-double GroundHeight(const stream::Track& track);
 
 }  // namespace footing::scene

@@ -7,8 +7,8 @@
 #include "clients/view/scene/bird.h"
 #include "clients/view/scene/body_stage.h"
 #include "clients/view/scene/calibration.h"
+#include "clients/view/scene/course.h"
 #include "clients/view/scene/game_ghost.h"
-#include "clients/view/scene/ribbon.h"
 #include "common/board/geometry.h"
 
 namespace footing::scene {

@@ -51,7 +51,7 @@ inline constexpr std::array<PlayKey, 15> kPlayKeys{{
 }};
 
 /// Lines for the list of keys: the keys and what they do.
-inline constexpr std::array<std::array<const char*, 2>, 9> kPlayKeyHelp{{
+inline constexpr std::array<std::array<const char*, 2>, 11> kPlayKeyHelp{{
     {"space", "pause or continue"},
     {"left, right", "1 s back, 1 s forward"},
     {", and .", "one frame back, one forward"},
@@ -61,6 +61,8 @@ inline constexpr std::array<std::array<const char*, 2>, 9> kPlayKeyHelp{{
     {"Home, End", "the beginning, the end"},
     {"L", "show or hide the timeline"},
     {"mouse", "click or drag on the timeline"},
+    {"", "drag above it to turn the view, wheel to zoom"},
+    {"Z", "the first view again; also a double click"},
 }};
 
 /// The action of a key; nothing when it has none.

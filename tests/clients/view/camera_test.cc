@@ -114,5 +114,71 @@ TEST(ChaseCamera, ALongPauseDoesNotThrowItOff) {
   EXPECT_NEAR(camera.Look().eye_m.x(), 0.5 - 4.5, 1e-3);
 }
 
+Camera Behind() {
+  Camera camera;
+  camera.eye_m = {-4, 1, 2.5};
+  camera.target_m = {1, 0, 1};
+  camera.pivot_m = Eigen::Vector3d(0, 0, 1);
+  return camera;
+}
+
+TEST(Orbit, WithoutATurnTheViewIsAsItWas) {
+  const Camera camera = Orbited(Behind(), {});
+  EXPECT_NEAR((camera.eye_m - Behind().eye_m).norm(), 0, 1e-12);
+  EXPECT_NEAR((camera.target_m - Behind().target_m).norm(), 0, 1e-12);
+}
+
+TEST(Orbit, AQuarterTurnGoesAroundThePivotWhichStaysInItsPlace) {
+  const Camera turned = Orbited(Behind(), {.azimuth_rad = kPi / 2});
+  // (-4, 1) turned by 90 degrees is (-1, -4).
+  EXPECT_NEAR((turned.eye_m - Eigen::Vector3d(-1, -4, 2.5)).norm(), 0, 1e-12);
+  const Eigen::Vector4f before = Clip(Behind(), *Behind().pivot_m);
+  const Eigen::Vector4f after = Clip(turned, *Behind().pivot_m);
+  EXPECT_NEAR(after.x() / after.w(), before.x() / before.w(), 1e-5);
+  EXPECT_NEAR(after.y() / after.w(), before.y() / before.w(), 1e-5);
+}
+
+TEST(Orbit, TheWheelChangesTheDistanceAndNothingElse) {
+  const Camera near = Orbited(Behind(), {.distance = 0.5});
+  EXPECT_NEAR((near.eye_m - Eigen::Vector3d(-2, 0.5, 1.75)).norm(), 0, 1e-12);
+}
+
+TEST(Orbit, TheEyeStaysOverTheGroundAndIsNeverOverhead) {
+  const Camera low = Orbited(Behind(), {.elevation_rad = -kPi / 2, .distance = 6});
+  EXPECT_GT(low.eye_m.z(), 0.3);
+  const Camera high = Orbited(Behind(), {.elevation_rad = kPi / 2});
+  EXPECT_GT(high.eye_m.head<2>().norm(), 0.5);
+  EXPECT_GT(high.eye_m.z(), 5);
+}
+
+TEST(MouseOrbit, ADragTurnsAndADoubleClickResets) {
+  MouseOrbit mouse;
+  mouse.Move({0.5, 0.5});  // Without a press nothing turns.
+  EXPECT_EQ(mouse.orbit().azimuth_rad, 0);
+  mouse.Press({0.5, 0.5}, 1);
+  mouse.Move({0.6, 0.55});
+  mouse.Release();
+  EXPECT_NEAR(mouse.orbit().azimuth_rad, -0.1 * kPi, 1e-12);
+  EXPECT_NEAR(mouse.orbit().elevation_rad, 0.05 * kPi, 1e-12);
+  mouse.Press({0.6, 0.55}, 5);
+  mouse.Release();
+  mouse.Press({0.6, 0.55}, 5.2);
+  EXPECT_EQ(mouse.orbit().azimuth_rad, 0);
+  mouse.Move({0.9, 0.9});
+  EXPECT_EQ(mouse.orbit().azimuth_rad, 0) << "the second press begins no drag";
+}
+
+TEST(MouseOrbit, TheWheelGoesNearerAndBackWithinLimits) {
+  MouseOrbit mouse;
+  mouse.Scroll(3);
+  EXPECT_LT(mouse.orbit().distance, 1);
+  mouse.Scroll(-3);
+  EXPECT_NEAR(mouse.orbit().distance, 1, 1e-12);
+  mouse.Scroll(1000);
+  EXPECT_GT(mouse.orbit().distance, 0.1);
+  mouse.Scroll(-1000);
+  EXPECT_LT(mouse.orbit().distance, 10);
+}
+
 }  // namespace
 }  // namespace footing::scene

@@ -311,6 +311,40 @@ TEST_F(HudPictureTest, TheInterfacePanelStaysInItsBoxForEveryInterface) {
   }
 }
 
+TEST_F(HudPictureTest, AProblemOfTheInterfaceIsWrittenWhole) {
+  const scene::made::Wish wish{.interface = stream::UserInterface::kLeg};
+  const scene::Model model = scene::made::ModelAfter(3, wish);
+  scene::WorldFrame frame = scene::made::TickAt(3, wish).frame.value();
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(3);
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  const Image without = Show(picture, model, frame, now_ns, {}, "mounted");
+  frame.characters.front().interface.unmounted_roles =
+      stream::RoleBit(stream::DeviceRole::kLeftLeg) |
+      stream::RoleBit(stream::DeviceRole::kRightLeg);
+  EXPECT_EQ(Strays(picture, model, frame, now_ns, {kWidth, kHeight}, "unmounted"), 0);
+  const Image with = Show(picture, model, frame, now_ns, {}, "unmounted");
+  const HudBoxes boxes =
+      BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, {kWidth, kHeight}, 1);
+  ASSERT_TRUE(boxes.interface);
+  // A line of its own under the command: "no mounting: left leg, right leg (footing-ctl setup)".
+  const auto amber = [](int r, int g, int b) { return r > 200 && g > 140 && b < 110; };
+  const auto rows = [&](const Image& image) {
+    int count = 0;
+    for (int y = static_cast<int>(boxes.interface->low.y); y < boxes.interface->high.y; ++y) {
+      int letters = 0;
+      for (auto x = static_cast<int>(boxes.interface->low.x); x < boxes.interface->high.x; ++x) {
+        const auto i = static_cast<std::size_t>(3 * (y * kWidth + x));
+        letters += amber(image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]) ? 1 : 0;
+      }
+      count += y > boxes.interface->low.y + 140 && letters > 10 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(rows(without), 0);
+  EXPECT_GT(rows(with), 4);
+}
+
 TEST_F(HudPictureTest, TheStickGaugeLightsUpWhereTheCharacterTurnsInPlace) {
   const scene::made::Wish wish{.gait = stream::Gait::kStep,
                                .interface = stream::UserInterface::kJoystick};

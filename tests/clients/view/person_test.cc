@@ -34,13 +34,13 @@ TEST(Anatomy, ATreeWhoseParentsAreNoTreeIsNotDrawn) {
   EXPECT_FALSE(anatomy.person);
   PartList parts;
   AddPerson(anatomy, std::vector<Eigen::Vector3d>(wrong.links.size()), {}, MannequinLook(), parts);
-  EXPECT_TRUE(parts.rods.empty());
+  EXPECT_TRUE(parts.limbs.empty());
 }
 
 TEST(Person, AnyOtherTreeIsDrawnAsALimbALink) {
   PartList parts;
   AddLimbs({-1, 0, 1}, {}, {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}}, Rgb(0xffffff), parts);
-  EXPECT_EQ(parts.rods.size(), 2u);
+  EXPECT_EQ(parts.limbs.size(), 2u);
 }
 
 TEST(Person, TheFigureIsAsTallAsItsBody) {
@@ -59,6 +59,28 @@ TEST(Person, TheFigureIsAsTallAsItsBody) {
     top = std::max(top, ball.X_WP(2, 3) + up.norm());
   }
   EXPECT_NEAR(top, 1.75, 0.03);
+}
+
+TEST(Person, TheTrunkHasNoStep) {
+  const Model model = made::PersonModelAfter(0.5, {});
+  std::vector<Eigen::Vector3d> p_m;
+  for (const auto& link : model.playout.Newest().characters[0].links) {
+    p_m.push_back(link.position_m);
+  }
+  PartList parts;
+  AddPerson(model.anatomy, p_m, {}, MannequinLook(), parts);
+  // The shirt's pieces come first, one after the other: each begins where and as wide as the one
+  // before ends.
+  int joints = 0;
+  for (std::size_t i = 1; i < 20; ++i) {
+    const Part &before = parts.limbs[i - 1], &after = parts.limbs[i];
+    if (before.colour != after.colour) continue;
+    const Eigen::Vector4f end = before.X_WP.col(3) + before.X_WP.col(2);
+    EXPECT_LT((end - after.X_WP.col(3)).norm(), 1e-4f) << i;
+    EXPECT_NEAR(before.taper * before.X_WP.col(0).norm(), after.X_WP.col(0).norm(), 1e-4f) << i;
+    ++joints;
+  }
+  EXPECT_EQ(joints, 18);
 }
 
 TEST(PersonStage, BeforeTheTPoseTheFigureIsASilhouette) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "tests/clients/view/made_stream.h"
 #include "tests/clients/view/picture_fixture.h"
@@ -131,6 +132,75 @@ TEST_F(PictureTest, TheSameMomentGivesTheSamePicture) {
   const scene::made::Wish wish;
   const scene::Model model = scene::made::ModelAfter(3, wish);
   EXPECT_EQ(Draw(model, 3, wish, {}, "once").rgb, Draw(model, 3, wish, {}, "twice").rgb);
+}
+
+TEST_F(PictureTest, NoDarkPixelShowsBetweenThePiecesOfABend) {
+  scene::Model model;
+  model.track = scene::made::StraightTrack(1.7);
+  for (int i = 0; i < 14; ++i) {
+    stream::TrackSegment next = model.track.segments.back();
+    next.start_m +=
+        next.length_m * Eigen::Vector3d(std::cos(next.heading_rad), std::sin(next.heading_rad), 0);
+    next.heading_rad += 0.11;
+    model.track.segments.push_back(next);
+  }
+  model.track_version = 77;
+  HudOptions subject;
+  subject.hidden = true;
+  const Image image = Draw(model, 0, {}, subject, "bend");
+  EXPECT_GT(ShareOf(image, IsClay, {0, 1, 0.5, 1}), 0.25);
+  const auto dark = [](int r, int g, int b) { return r + g + b < 150; };
+  EXPECT_EQ(ShareOf(image, dark, {0, 1, 0.55, 1}), 0);
+}
+
+TEST_F(PictureTest, LimbsMeetWithoutSpots) {
+  scene::Picture picture;
+  picture.camera.eye_m = {0, 2.5, 0.9};
+  picture.camera.target_m = {0, 0, 1};
+  const scene::Colour white(0.8f, 0.8f, 0.8f);
+  for (int i = 0; i < 6; ++i) {
+    const float x = -0.6f + 0.2f * static_cast<float>(i);
+    picture.figures.AddLimb({x, 0, 1}, {x + 0.2f, 0, 1}, 0.12f, 0.12f, white);
+  }
+  HudOptions subject;
+  subject.hidden = true;
+  const Image image = Show(picture, {}, {}, 0, subject, "limbs");
+  // Along the middle row all is of one brightness; a cap inside a joint is much darker.
+  int low = 255, high = 0;
+  for (int y = kHeight / 2 - 20; y <= kHeight / 2 + 20; y += 1) {
+    int row_low = 255, row_high = 0;
+    for (int x = kWidth * 4 / 10; x < kWidth * 6 / 10; ++x) {
+      const int red = image.rgb[static_cast<std::size_t>(3 * (y * kWidth + x))];
+      row_low = std::min(row_low, red), row_high = std::max(row_high, red);
+    }
+    low = std::min(low, row_low - row_high), high = std::max(high, row_high - row_low);
+  }
+  EXPECT_LT(high, 14);
+  EXPECT_GT(low, -14);
+}
+
+TEST_F(PictureTest, TheListOfKeysLeavesTheBirdInSight) {
+  const scene::made::Wish wish;
+  const scene::Model model = scene::made::ModelAfter(3, wish);
+  HudOptions keys;
+  keys.keys = true;
+  const Image with = Draw(model, 3, wish, keys, "keys");
+  const Image without = Draw(model, 3, wish, {}, "no_keys");
+  EXPECT_GT(MeanDifference(with, without), 1);
+  int changed = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = kWidth * 4 / 10; x < kWidth * 6 / 10; ++x) {
+      const auto i = static_cast<std::size_t>(3 * (y * kWidth + x));
+      if (std::abs(with.rgb[i] - without.rgb[i]) > 2) ++changed;
+    }
+  }
+  EXPECT_EQ(changed, 0);
+}
+
+TEST_F(PictureTest, EdgesAreSmoothUnlessAskedOtherwise) {
+  const auto smooth = Target::Create(64, 64, std::nullopt);
+  ASSERT_TRUE(smooth) << smooth.error().message;
+  EXPECT_EQ(smooth->samples(), Target::kSamples) << "Mesa has them";
 }
 
 TEST(Target, RefusesSizesThatNoPictureHas) {

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -121,8 +122,54 @@ TEST_F(ProgramTest, ARecordingIsNumberedPictures) {
   EXPECT_FALSE(std::filesystem::exists(to + "/000002.png"));
 }
 
+TEST_F(ProgramTest, ARecordingDoesNotOverwriteAnother) {
+  const std::string to = File("kept");
+  std::filesystem::create_directories(to);
+  { std::ofstream(to + "/000007.png") << "kept"; }
+  const Outcome outcome =
+      RunCommand(View("--record " + to + " --seconds 0.2 --width 320 --height 180") + " 2>&1");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("has pictures already (000007.png)"));
+  EXPECT_THAT(outcome.output, HasSubstr("name another folder"));
+  EXPECT_EQ(std::filesystem::file_size(to + "/000007.png"), 4u);
+}
+
+TEST_F(ProgramTest, AFilmNeedsAnEncoderAndIsNoFolder) {
+  const std::string film = File("walk.mp4");
+  const std::string words = "--record " + film + " --seconds 0.5 --width 320 --height 180";
+  const Outcome without = RunCommand("PATH=/nowhere " + View(words) + " 2>&1");
+  EXPECT_EQ(without.code, 2);
+  EXPECT_THAT(without.output, HasSubstr("apt install ffmpeg"));
+  EXPECT_FALSE(std::filesystem::exists(film));
+  // An encoder that takes raw pictures on its standard input and names the film last.
+  const std::string folder = File("encoder");
+  std::filesystem::create_directories(folder);
+  { std::ofstream(folder + "/ffmpeg") << "#!/bin/sh\nfor to; do :; done\nexec cat >\"$to\"\n"; }
+  std::filesystem::permissions(folder + "/ffmpeg", std::filesystem::perms::owner_all);
+  const Outcome with = RunCommand("PATH=" + folder + ":/usr/bin:/bin " + View(words) + " 2>&1");
+  EXPECT_EQ(with.code, 0) << with.output;
+  EXPECT_EQ(std::filesystem::file_size(film), 5u * 320 * 180 * 3);
+  const Outcome again = RunCommand("PATH=" + folder + ":/usr/bin:/bin " + View(words) + " 2>&1");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.output, HasSubstr("there is such a file already"));
+}
+
+TEST_F(ProgramTest, AScreenshotIsWhatItsNameSays) {
+  const std::string size = " --at 0 --width 320 --height 180";
+  const std::string jpg = File("a.jpg");
+  EXPECT_EQ(RunCommand(View("--screenshot " + jpg + size) + " 2>&1").code, 0);
+  std::ifstream file(jpg, std::ios::binary);
+  EXPECT_EQ(file.get(), 0xff);
+  EXPECT_EQ(file.get(), 0xd8);
+  const Outcome refused = RunCommand(View("--screenshot a.bmp" + size) + " 2>&1");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.output, HasSubstr("PNG or JPEG"));
+  EXPECT_THAT(refused.output, HasSubstr("a.png"));
+}
+
 TEST_F(ProgramTest, WrongWordsEndWithTwoAndOneLine) {
-  for (const char* words : {"--recording walk.mcap", "--connect nonsense", "--msaa 3", "--at x"}) {
+  for (const char* words : {"--recording walk.mcap", "--connect nonsense", "--msaa 3", "--at x",
+                            "--ui-scale 9", "--panels clock"}) {
     const Outcome outcome = RunCommand(View(words) + " 2>&1");
     EXPECT_EQ(outcome.code, 2) << words << ": " << outcome.output;
     EXPECT_FALSE(outcome.output.empty());

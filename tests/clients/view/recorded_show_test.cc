@@ -112,6 +112,7 @@ void ExpectSamePicture(const scene::Show::Shot& a, const scene::Show::Shot& b) {
   EXPECT_LT((a.picture.camera.target_m - b.picture.camera.target_m).norm(), 1e-6);
   ExpectSameParts(a.picture.figures.balls, b.picture.figures.balls);
   ExpectSameParts(a.picture.figures.rods, b.picture.figures.rods);
+  ExpectSameParts(a.picture.figures.limbs, b.picture.figures.limbs);
 }
 
 /// Plays one to the position in uneven steps, seeks to it with the other, and compares.

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "clients/view/scene/digits.h"
 #include "common/units/units.h"
@@ -78,31 +80,82 @@ TEST(Ribbon, NormalsOfTheSurfacePointUp) {
   }
 }
 
-TEST(Ribbon, SegmentsMeetWithoutAGapWhereTheTrackTurns) {
-  stream::Track track = made::StraightTrack(10);
-  stream::TrackSegment& first = track.segments.front();
-  stream::TrackSegment turned = first;
-  turned.start_m = first.start_m + Eigen::Vector3d(10, 0, 0);
-  turned.heading_rad = 0.5;
-  track.segments.push_back(turned);
-  const RibbonMesh mesh = BuildRibbon(track);
-  // The first four vertices of a segment are its face: start right, end right, end left, start
-  // left.
-  const auto face = [&mesh](float from_m) {
-    std::vector<Eigen::Vector3f> corners;
-    for (const RibbonVertex& v : mesh.vertices) {
-      if (v.kind == 0 && v.along_m > from_m - 1.2f && v.along_m < from_m + 1.2f) {
-        corners.push_back(v.position);
-      }
-    }
-    return corners;
+/// A track of straight pieces that turn to the left.
+stream::Track Bend(int count, double length_m, double turn_rad) {
+  stream::Track track = made::StraightTrack(length_m);
+  for (int i = 1; i < count; ++i) {
+    stream::TrackSegment next = track.segments.back();
+    next.start_m +=
+        next.length_m * Eigen::Vector3d(std::cos(next.heading_rad), std::sin(next.heading_rad), 0);
+    next.heading_rad += turn_rad;
+    track.segments.push_back(next);
+  }
+  return track;
+}
+
+/// The quads of the surface: start right, end right, end left, start left.
+std::vector<std::array<RibbonVertex, 4>> Surface(const RibbonMesh& mesh) {
+  std::vector<std::array<RibbonVertex, 4>> quads;
+  for (std::size_t i = 0; i + 3 < mesh.vertices.size(); i += 4) {
+    if (mesh.vertices[i].kind != 0) continue;
+    quads.push_back(
+        {mesh.vertices[i], mesh.vertices[i + 1], mesh.vertices[i + 2], mesh.vertices[i + 3]});
+  }
+  return quads;
+}
+
+TEST(Ribbon, NeighboursShareTheirCornersToTheLastBit) {
+  const auto quads = Surface(BuildRibbon(Bend(12, 1.7, 0.17)));
+  ASSERT_GT(quads.size(), 12u);
+  for (std::size_t i = 1; i < quads.size(); ++i) {
+    EXPECT_EQ(quads[i - 1][1].position, quads[i][0].position) << i;
+    EXPECT_EQ(quads[i - 1][2].position, quads[i][3].position) << i;
+    EXPECT_EQ(quads[i - 1][1].along_m, quads[i][0].along_m) << i;
+  }
+  EXPECT_EQ(HeightAt(Bend(2, 10, 0.5), {8.2, -1.5}, -1), 0) << "outside of the bend";
+}
+
+TEST(Ribbon, NoWallStandsAcrossTheTrackBetweenNeighbours) {
+  int across = 0;
+  const RibbonMesh mesh = BuildRibbon(Bend(12, 1.7, 0.17));
+  for (std::size_t i = 0; i + 3 < mesh.vertices.size(); i += 4) {
+    const RibbonVertex &a = mesh.vertices[i], &b = mesh.vertices[i + 1];
+    across += a.kind == 2 && (a.position - b.position).norm() > 3.5f ? 1 : 0;
+  }
+  EXPECT_EQ(across, 2) << "only at the start and at the end";
+}
+
+TEST(Ribbon, ABendIsACurveNearTheTrackThatIsWalkedOn) {
+  // Two degrees at most between two pieces, where the track turns by ten.
+  const auto quads = Surface(BuildRibbon(Bend(12, 1.7, 0.17)));
+  const auto ahead = [](const std::array<RibbonVertex, 4>& quad) -> Eigen::Vector3f {
+    return (quad[1].position + quad[2].position - quad[0].position - quad[3].position).normalized();
   };
-  const auto joint = face(10);
-  ASSERT_EQ(joint.size(), 4u);
-  EXPECT_LT((joint[0] - joint[2]).norm(), 1e-5f);  // Right: end of the first, start of the second.
-  EXPECT_LT((joint[1] - joint[3]).norm(), 1e-5f);  // Left.
-  // Just outside the bend, where the gap was.
-  EXPECT_EQ(HeightAt(track, {8.2, -1.5}, -1), 0);
+  for (std::size_t i = 1; i < quads.size(); ++i) {
+    const float turn = std::acos(std::min(1.0f, ahead(quads[i - 1]).dot(ahead(quads[i]))));
+    EXPECT_LT(turn, static_cast<float>(DegreesToRadians(2))) << i;
+  }
+  // A corner of ten degrees, cut 0.85 m before it: a quarter of 2 x 0.85 tan(5 degrees) = 4 cm.
+  const stream::Track track = Bend(2, 1.7, 0.17);
+  const Eigen::Vector3f corner = track.segments[1].start_m.cast<float>();
+  float nearest = 1e9f;
+  for (const auto& quad : Surface(BuildRibbon(track))) {
+    nearest = std::min(nearest, ((quad[1].position + quad[2].position) / 2 - corner).norm());
+  }
+  EXPECT_NEAR(nearest, 0.85 * std::tan(0.085) / 2, 0.005);
+}
+
+TEST(Ribbon, AnEndlessTrackGoesOnAndFades) {
+  stream::Track track = made::StraightTrack(30);
+  EXPECT_EQ(FadeOf(track).to_m, 0);
+  track.endless = true;
+  track.first_m = 100;
+  const Fade fade = FadeOf(track);
+  EXPECT_EQ(fade.from_m, 130);
+  EXPECT_GT(fade.to_m, 150);
+  float last = 0;
+  for (const auto& quad : Surface(BuildRibbon(track))) last = std::max(last, quad[1].along_m);
+  EXPECT_EQ(last, fade.to_m);
 }
 
 TEST(HeightAt, FollowsTheSlopeAndLeavesPitsAndTheGroundAlone) {

@@ -88,7 +88,7 @@ bool HasReference(const scene::CharacterPose& pose, const scene::Picture& pictur
 
 std::vector<Remark> RemarksOf(const scene::CharacterPose& pose, const scene::Picture& picture) {
   std::vector<Remark> remarks{
-      {colour::kFaint, "T  T-pose    N  next subject    ?  keys"},
+      {colour::kFaint, "?  keys"},
       {IM_COL32(199, 125, 255, 255),
        "angular momentum " + scene::Fixed(pose.body->angular_momentum_kgm2ps.norm(), 1) +
            " kg m\xc2\xb2/s"}};

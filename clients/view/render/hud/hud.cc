@@ -21,12 +21,14 @@
 #include "clients/view/render/hud/t_pose_panel.h"
 #include "clients/view/render/hud/trial_panel.h"
 #include "clients/view/scene/game_text.h"
+#include "clients/view/scene/live_keys.h"
 
 namespace footing::render {
 namespace {
 
 constexpr PanelHeight kBoardPanelHeight{150, 236};
 constexpr float kAloneEdge = 10;
+constexpr float kFigureTop = 0.42f;  // Of the picture's height: the biped's head is lower.
 
 const scene::CharacterPose* FirstCharacter(const HudContent& content) {
   return content.frame.characters.empty() ? nullptr : &content.frame.characters.front();
@@ -51,6 +53,12 @@ HudNeeds NeedsOf(const HudContent& content, const HudOptions& options) {
   }
   if (!person) needs.strips = StripPanelHeight(content.past.strips);
   if (person || !content.model.boards.empty()) needs.boards = kBoardPanelHeight;
+  const PanelChoice& shown = options.panels;
+  if (!shown.character) needs.character = {};
+  if (!shown.strips) needs.strips = {};
+  if (!shown.devices) needs.devices = {};
+  if (!shown.interface) needs.interface = {};
+  if (!shown.boards) needs.boards = {};
   return needs;
 }
 
@@ -73,6 +81,14 @@ void DrawColumns(const Paint& p, const HudContent& content, const HudBoxes& boxe
   } else if (boxes.boards) {
     DrawBoardPanel(p, *boxes.boards, content.past, content.past_ns);
   }
+}
+
+void DrawLiveKeys(const Paint& p, const HudContent& content, const HudOptions& options,
+                  ImVec2 size) {
+  if (!options.keys) return;
+  DrawKeys(p, size,
+           scene::LiveKeyLines(
+               scene::ContextOf(content.model, options.has_subjects, options.calibrates)));
 }
 
 /// In place of all that belongs to a character.
@@ -102,7 +118,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
     const float edge = kAloneEdge * p.scale;
     DrawCameraPanel(p, {{edge, edge}, {size.x - edge, size.y - edge}}, model.observed.camera,
                     content.now_ns);
-    if (options.keys) DrawKeys(p, size, false);
+    DrawLiveKeys(p, content, options, size);
     return;
   }
   const HudBoxes boxes = BoxesOf(content, options, size, p.scale);
@@ -110,7 +126,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   if (scene::IsSimulated(model)) DrawSimulated(p, boxes.stamp);
   if (model.observed.calibration) {
     DrawCalibration(p, content, boxes, size);
-    if (options.keys) DrawKeys(p, size, false);
+    DrawLiveKeys(p, content, options, size);
     return;
   }
   Box notes = boxes.middle;
@@ -118,8 +134,12 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   DrawReplay(p, model, content.now_ns, notes);
   if (!options.hidden) DrawStudyPanel(p, model, content.now_ns, notes);
   const scene::CharacterPose* pose = FirstCharacter(content);
-  // The person must know why the character stops.
-  if (pose != nullptr) DrawLostPanel(p, *pose, notes);
+  // The person must know why the character stops, and see it.
+  if (pose != nullptr) {
+    Box above{notes.low, {notes.high.x, std::max(notes.low.y, kFigureTop * size.y)}};
+    DrawLostPanel(p, *pose, above);
+    notes.low.y = above.low.y;
+  }
   if (options.hidden) DrawParticipantPanel(p, model, pose, content.now_ns, notes);
   // A round is a trial: its panel would say the same again.
   if (scene::ShowsGame(model.game, pose != nullptr && pose->trial ? &*pose->trial : nullptr)) {
@@ -127,7 +147,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   } else if (pose != nullptr) {
     DrawTrialPanel(p, model, *pose, options.hidden, notes);
   }
-  if (options.hidden) return;
+  if (options.hidden) return DrawLiveKeys(p, content, options, size);
   if (scene::IsWaiting(model)) {
     DrawWaiting(p, model, boxes.middle);
     DrawColumns(p, content, boxes);
@@ -140,7 +160,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
     if (IsPerson(pose)) DrawTPosePanel(p, model, *pose, messages);
   }
   if (options.frozen) DrawFrozen(p, notes);
-  if (options.keys) DrawKeys(p, size, false);
+  DrawLiveKeys(p, content, options, size);
 }
 
 }  // namespace footing::render

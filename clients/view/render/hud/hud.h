@@ -9,6 +9,11 @@
 
 namespace footing::render {
 
+/// The panels at both sides that are shown, where they have something to show.
+struct PanelChoice {
+  bool character = true, strips = true, devices = true, interface = true, boards = true;
+};
+
 /// What the user has switched on.
 struct HudOptions {
   bool hidden = false;  ///< Subject mode: the world alone.
@@ -18,11 +23,12 @@ struct HudOptions {
   bool overlay_reference = false;
   bool frozen = false;
   bool replay_asked = false;  ///< Key presses that wait for their action.
-  bool t_pose_asked = false;
-  bool next_subject_asked = false;
   bool calibration_asked = false;
   bool calibration_end_asked = false;
   bool columns = true;        ///< The panels at both sides.
+  PanelChoice panels;         ///< Which of them.
+  bool has_subjects = false;  ///< There are subject files for the key N.
+  bool calibrates = false;    ///< There is a camera file for the key C.
   bool camera = false;        ///< The preview of footing-camera in a corner.
   bool camera_alone = false;  ///< And nothing else.
   std::string title;          ///< Above all else; empty: none.

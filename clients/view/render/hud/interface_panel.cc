@@ -1,6 +1,8 @@
 #include "clients/view/render/hud/interface_panel.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "clients/view/render/hud/interface_gauges.h"
 #include "clients/view/scene/interface_text.h"
@@ -15,6 +17,9 @@ using stream::UserInterface;
 constexpr float kInterfacePanelHeight = 152;
 constexpr float kGaugesTop = 22, kGaugesHeight = 76;
 constexpr float kGaugeGap = 12;
+constexpr float kCommandRow = 24, kProblemRow = 17, kAboveProblem = 8;
+constexpr float kBelowText = 4;       // Of a row, under its letters.
+constexpr float kLettersOfLine = 34;  // That surely fit into the narrowest panel.
 constexpr ImU32 kLetters = IM_COL32(14, 20, 26, 255);
 
 /// The gauge of the motion, and that of its pace; one over both columns where it says both.
@@ -44,7 +49,7 @@ void DrawMotion(const Paint& p, const Box& left, const Box& middle,
 }
 
 /// The commanded gait, and one that is seen and has not lasted long enough, filling up.
-void DrawCommand(const Paint& p, ImVec2 at, float end, const stream::InterfaceState& state) {
+void DrawCommand(const Paint& p, ImVec2 at, const Box& in, const stream::InterfaceState& state) {
   const float s = p.scale;
   float x = at.x + p.Label(at, ColourOf(state.gait), kLetters, scene::GaitTitle(state.gait));
   if (state.next_gait != Gait::kUnspecified) {
@@ -57,15 +62,27 @@ void DrawCommand(const Paint& p, ImVec2 at, float end, const stream::InterfaceSt
   }
   const std::string problem = scene::ProblemText(state);
   if (problem.empty()) return;
-  p.Write(p.fonts.small, {x + 10 * s, at.y + 2.5f * s}, colour::kWarning,
-          p.Fitting(p.fonts.small, problem, end - x - 10 * s));
+  // Under the command in as many lines as it needs; where the panel is too low, beside it.
+  const auto lines = p.Wrapped(p.fonts.small, problem, in.high.x - at.x);
+  const float first = at.y + kCommandRow * s, row = kProblemRow * s;
+  if (first + row * static_cast<float>(lines.size()) > in.high.y + kBelowText * s) {
+    p.Write(p.fonts.small, {x + 10 * s, at.y + 2.5f * s}, colour::kWarning,
+            p.Fitting(p.fonts.small, problem, in.high.x - x - 10 * s));
+    return;
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    p.Write(p.fonts.small, {at.x, first + row * static_cast<float>(i)}, colour::kWarning, lines[i]);
+  }
 }
 
 }  // namespace
 
 PanelHeight InterfacePanelHeight(const stream::InterfaceState& state) {
   if (state.interface == UserInterface::kUnspecified) return {};
-  return {kInterfacePanelHeight, kInterfacePanelHeight};
+  const auto letters = static_cast<float>(scene::ProblemText(state).size());
+  const float lines = std::ceil(letters / kLettersOfLine);
+  return {kInterfacePanelHeight,
+          kInterfacePanelHeight + (lines > 0 ? kAboveProblem : 0) + kProblemRow * lines};
 }
 
 void DrawInterfacePanel(const Paint& p, const Box& box, const stream::InterfaceState& state) {
@@ -83,7 +100,7 @@ void DrawInterfacePanel(const Paint& p, const Box& box, const stream::InterfaceS
   };
   DrawMotion(p, column(0), column(1), state);
   DrawTurnGauge(p, column(2), state);
-  DrawCommand(p, {in.low.x, in.low.y + (kGaugesTop + kGaugesHeight + 9) * s}, in.high.x, state);
+  DrawCommand(p, {in.low.x, in.low.y + (kGaugesTop + kGaugesHeight + 9) * s}, in, state);
 }
 
 }  // namespace footing::render

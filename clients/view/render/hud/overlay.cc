@@ -1,13 +1,11 @@
 #include "clients/view/render/hud/overlay.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "clients/view/scene/words.h"
-#include "clients/view/timeline/play_keys.h"
 #include "common/units/units.h"
 
 namespace footing::render {
@@ -92,37 +90,14 @@ void DrawWaitingLines(const Paint& p, const scene::Model& model, Box& space) {
   }
 }
 
-void DrawKeys(const Paint& p, ImVec2 size, bool playback) {
-  using Line = std::array<const char*, 2>;
-  static constexpr std::array<Line, 7> kLiveKeys{{
-      {"P", "states of the gait controller"},
-      {"R", "replay the last fall in slow motion"},
-      {"T", "take the T-pose again"},
-      {"N", "the next subject"},
-      {"V", "the preview of the camera"},
-      {"C", "calibrate where the camera stands; X ends it"},
-      {"space", "freeze the picture"},
-  }};
-  static constexpr std::array<Line, 4> kAllKeys{{
-      {"?", "show or hide this list"},
-      {"F", "force arrows at the feet"},
-      {"O", "the true pose beside the body, or over it"},
-      {"Esc, Q", "quit"},
-  }};
-  std::vector<Line> keys{kAllKeys.begin(), kAllKeys.end() - 1};
-  if (playback) {
-    keys.insert(keys.end(), timeline::kPlayKeyHelp.begin(), timeline::kPlayKeyHelp.end());
-  } else {
-    keys.insert(keys.end(), kLiveKeys.begin(), kLiveKeys.end());
-  }
-  keys.push_back(kAllKeys.back());
-  const float s = p.scale, first = 104 * s;
+void DrawKeys(const Paint& p, ImVec2 size, const std::vector<scene::KeyLine>& keys) {
+  const float s = p.scale, first = 104 * s, edge = 10 * s;
   float width = 340 * s;
-  for (const Line& line : keys) {
-    width = std::max(width, first + p.WidthOf(p.fonts.text, line[1]) + 40 * s);
+  for (const scene::KeyLine& line : keys) {
+    width = std::max(width, first + p.WidthOf(p.fonts.text, line.what) + 40 * s);
   }
   const float height = (70 + 26 * static_cast<float>(keys.size())) * s;
-  const ImVec2 low((size.x - width) / 2, (size.y - height) / 2);
+  const ImVec2 low(std::max(0.0f, size.x - width - edge), std::max(0.0f, (size.y - height) / 2));
   const Box box{low, {low.x + width, low.y + height}};
   p.list->AddRectFilled(box.low, box.high, colour::kBehindKeys, 10 * s);
   const Box in = p.Panel(box);

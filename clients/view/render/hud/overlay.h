@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "clients/view/render/hud/hud.h"
+#include "clients/view/scene/live_keys.h"
 
 namespace footing::render {
 
@@ -9,8 +12,8 @@ void DrawWaiting(const Paint& paint, const scene::Model& model, const Box& box);
 /// A few small lines for each connection that is not live, from the bottom of `space` upwards;
 /// takes away from `space` what they fill.
 void DrawWaitingLines(const Paint& paint, const scene::Model& model, Box& space);
-/// The list of keys, of playback or of a live view.
-void DrawKeys(const Paint& paint, ImVec2 size, bool playback);
+/// The list of keys, at the right: the figure in the middle stays in sight.
+void DrawKeys(const Paint& paint, ImVec2 size, const std::vector<scene::KeyLine>& keys);
 /// What is shown of several recordings, and how it stands. A banner as those below.
 void DrawTitle(const Paint& paint, const std::string& title, const std::string& over, Box& space);
 /// "SIMULATED INPUT" in the middle of a row.
