@@ -24,9 +24,8 @@ def function(head, lines):
 
 
 class Size(unittest.TestCase):
-    def test_a_file_has_at_most_300_lines(self):
-        self.assertEqual(problems("int a;\n" * 300), [])
-        self.assertIn("301 lines", problems("int a;\n" * 301)[0])
+    def test_a_file_may_be_long(self):
+        self.assertEqual(problems("int a;\n" * 1000), [])
 
     def test_a_function_has_at_most_60_lines(self):
         self.assertEqual(problems(function("void Short()", 60)), [])

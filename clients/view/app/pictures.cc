@@ -124,10 +124,11 @@ std::string NumberedPicture(const std::string& folder, int number) {
 }
 
 Result<PictureSink> PictureSink::Open(const std::string& path, double hz) {
-  if (auto checked = CheckRecordName(path); !checked) return checked.error();
   std::error_code error;
   if (!IsFilm(path)) fs::create_directories(path, error);
   if (error) return Failure("cannot make the folder " + path + ": " + error.message());
+  // With the folder there: "new/../old" names one only then.
+  if (auto checked = CheckRecordName(path); !checked) return checked.error();
   return PictureSink(path, hz);
 }
 

@@ -15,8 +15,8 @@ struct FrameTimes {
 ///
 /// footingd reads what arrives in bursts while it is busy: several frames then share one
 /// `received_ns`, although they were sent one after the other. Where the sender states when it sent
-/// a frame, the exposure is exact. Where it does not, a frame is taken as sent when it was read, and
-/// the earlier frames of the same read are as much older as the source's frames are apart.
+/// a frame, the exposure is exact. Where it does not, a frame is taken as sent when it was read,
+/// and the earlier frames of the same read are as much older as the source's frames are apart.
 class ExposureClock {
  public:
   struct Exposure {

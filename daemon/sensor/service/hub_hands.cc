@@ -81,9 +81,8 @@ void Hub::OnContacts(std::int64_t received_ns, const stream::ContactFrame& frame
   }
   if (content_.contacts.size() >= kMaxContactsPerTick) return;
   stream::ContactSample sample = hands::ToSample(frame, received_ns, config_.default_rig);
-  const auto exposure =
-      Expose({'c', sample.rig, sample.source, static_cast<int>(sample.body)},
-             {received_ns, frame.sent_ns, frame.age_ns});
+  const auto exposure = Expose({'c', sample.rig, sample.source, static_cast<int>(sample.body)},
+                               {received_ns, frame.sent_ns, frame.age_ns});
   sample.sampled_ns = exposure.sampled_ns;
   MakeEarlier(content_.contacts, received_ns, exposure.others_earlier_ns, [&](const auto& other) {
     return other.rig == sample.rig && other.source == sample.source && other.body == sample.body;

@@ -51,7 +51,7 @@ class SensorInput {
   exchange::Latest<Inputs>& out_;
   Responses& responses_;
   Inputs inputs_;
-  FeatureStamps stamps_;  ///< Of the newest that was not silence.
+  FeatureStamps stamps_;              ///< Of the newest that was not silence.
   std::uint64_t appends_taken_ = 0;   ///< Or refused, by the engine.
   std::uint64_t direct_session_ = 0;  ///< Of the newest DirectGait.
 };
