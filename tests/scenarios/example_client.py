@@ -3,6 +3,7 @@
 
 Usage: example_client.py BINARY_FOLDER
 """
+import json
 import pathlib
 import subprocess
 import sys
@@ -49,8 +50,12 @@ def main():
         assert times == sorted(times), "the samples of a device are in order"
         stage.stop("footing-stream")
 
-        stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "none",
+        motion = stage.folder / "motion.json"
+        motion.write_text(json.dumps({"sway_mm": 2, "keys": [{"seconds": 6}]}))
+        stage.start("footing-stream", "boards", "--motion", motion, "--hands", "none",
                     "--to", stage.devices, name="boards")
+        log = stage.folder / "boards.log"
+        stage.wait_for(lambda: "attached" in log.read_text(), "the boards to attach", 300)
         rows = rows_of(stage, 200)
         boards = [row for row in rows if row[2] == "cop_n_m_m"]
         assert boards, "no board row"
