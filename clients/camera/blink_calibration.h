@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
-#include "common/sphere/blink.h"
-#include "common/sphere/find.h"
+#include "common/base/result.h"
+#include "common/camera/blink.h"
+#include "common/camera/find.h"
 
 namespace footing::camera {
 

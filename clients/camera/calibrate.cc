@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "clients/camera/lights.h"
-#include "common/clock/clock.h"
-#include "common/log/log.h"
-#include "common/transport/run_folder.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
+#include "common/net/run_folder.h"
 
 namespace footing::camera {
 namespace {

@@ -5,7 +5,7 @@
 #include "clients/camera/blink_calibration.h"
 #include "clients/camera/source.h"
 #include "common/stream/device.h"
-#include "common/transport/address.h"
+#include "common/net/address.h"
 
 namespace footing::camera {
 

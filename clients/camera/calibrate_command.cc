@@ -6,8 +6,8 @@
 #include "clients/camera/calibrate.h"
 #include "clients/camera/command_line.h"
 #include "common/cli/cli.h"
-#include "common/log/log.h"
-#include "common/transport/address_or_default.h"
+#include "common/runtime/log.h"
+#include "common/net/address_or_default.h"
 
 namespace footing::camera {
 namespace {

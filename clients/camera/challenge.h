@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/sphere/find.h"
+#include "common/camera/find.h"
 
 namespace footing::camera {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "clients/camera/source.h"
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/frames/frame_folder.h"
 
 namespace footing::camera {

@@ -6,8 +6,8 @@
 #include "clients/camera/command_line.h"
 #include "clients/camera/measure_lens.h"
 #include "common/cli/cli.h"
-#include "common/config/write_file.h"
-#include "common/log/log.h"
+#include "common/runtime/write_file.h"
+#include "common/runtime/log.h"
 
 namespace footing::camera {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 
 namespace footing::camera {
 

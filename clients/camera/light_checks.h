@@ -7,8 +7,8 @@
 
 #include "clients/camera/challenge.h"
 #include "common/frames/camera_file.h"
-#include "common/result/result.h"
-#include "common/sphere/find.h"
+#include "common/base/result.h"
+#include "common/camera/find.h"
 #include "common/stream/device.h"
 
 namespace footing::camera {

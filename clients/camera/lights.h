@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/device.h"
-#include "common/transport/address.h"
-#include "common/transport/client.h"
+#include "common/net/address.h"
+#include "common/net/client.h"
 
 namespace footing::camera {
 

@@ -7,8 +7,8 @@
 #include <csignal>
 #include <utility>
 
-#include "common/lens_calibration/view_collector.h"
-#include "common/log/log.h"
+#include "common/camera/view_collector.h"
+#include "common/runtime/log.h"
 
 namespace footing::camera {
 namespace {

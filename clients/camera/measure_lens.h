@@ -1,7 +1,7 @@
 #pragma once
 
 #include "clients/camera/source.h"
-#include "common/lens_calibration/fit_lens.h"
+#include "common/camera/fit_lens.h"
 
 namespace footing::camera {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "clients/camera/source.h"
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/frames/netpbm.h"
 
 namespace footing::camera {

@@ -7,8 +7,8 @@
 #include "clients/camera/light_checks.h"
 #include "common/frames/camera_file.h"
 #include "common/frames/frame.h"
-#include "common/preview/preview.h"
-#include "common/sphere/blobs.h"
+#include "common/camera/preview.h"
+#include "common/camera/blobs.h"
 
 namespace footing::camera {
 

@@ -11,8 +11,8 @@
 #include <cmath>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/log/log.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
 
 namespace footing::camera {
 namespace {

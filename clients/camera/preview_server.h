@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "clients/camera/preview_picture.h"
-#include "common/exchange/flag.h"
-#include "common/exchange/latest.h"
-#include "common/transport/listener.h"
+#include "common/runtime/flag.h"
+#include "common/runtime/latest.h"
+#include "common/net/listener.h"
 
 namespace footing::camera {
 

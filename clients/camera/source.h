@@ -7,7 +7,7 @@
 
 #include "common/frames/camera_file.h"
 #include "common/frames/frame.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::camera {
 

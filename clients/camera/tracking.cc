@@ -14,11 +14,11 @@
 #include "clients/camera/lights.h"
 #include "clients/camera/observation.h"
 #include "clients/camera/preview_server.h"
-#include "common/clock/clock.h"
-#include "common/device_link/device_link.h"
-#include "common/log/log.h"
-#include "common/sphere/find.h"
-#include "common/text/quantile.h"
+#include "common/runtime/clock.h"
+#include "common/net/device_link.h"
+#include "common/runtime/log.h"
+#include "common/camera/find.h"
+#include "common/base/quantile.h"
 
 namespace footing::camera {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "clients/camera/source.h"
-#include "common/transport/address.h"
+#include "common/net/address.h"
 
 namespace footing::camera {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clients/camera/source.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::camera {
 

@@ -11,7 +11,7 @@
 
 #include "clients/camera/source.h"
 #include "clients/camera/video_port.h"
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::camera {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "clients/ctl/acceptance_run.h"
 #include "clients/ctl/acceptance_text.h"
-#include "common/mcap/records.h"
+#include "common/recording/records.h"
 #include "common/recording/recorded_session.h"
 
 namespace footing::ctl {

@@ -9,9 +9,9 @@
 #include "clients/ctl/guided.h"
 #include "common/board/layout.h"
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/recording/stream_recorder.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {

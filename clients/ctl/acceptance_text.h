@@ -7,7 +7,7 @@
 
 #include "common/guide/acceptance.h"
 #include "common/guide/layout.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::ctl {

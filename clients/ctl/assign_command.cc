@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/display/find_device.h"
+#include "clients/ctl/report/find_device.h"
 #include "clients/ctl/gesture_command.h"
 #include "clients/ctl/guided.h"
 #include "common/cli/cli.h"

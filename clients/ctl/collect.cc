@@ -12,7 +12,7 @@
 #include <iterator>
 #include <memory>
 
-#include "clients/ctl/doctor/parse.h"
+#include "clients/ctl/report/parse.h"
 
 namespace footing::ctl {
 namespace {

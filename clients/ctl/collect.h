@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "clients/ctl/doctor/facts.h"
+#include "clients/ctl/report/facts.h"
 
 namespace footing::ctl {
 

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "common/cli/cli.h"
-#include "common/text/json_text.h"
-#include "common/transport/address_or_default.h"
-#include "common/transport/run_folder.h"
+#include "common/base/json_text.h"
+#include "common/net/address_or_default.h"
+#include "common/net/run_folder.h"
 
 namespace footing::ctl {
 

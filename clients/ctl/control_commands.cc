@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/display/device_table.h"
-#include "clients/ctl/display/find_device.h"
+#include "clients/ctl/report/device_table.h"
+#include "clients/ctl/report/find_device.h"
 #include "common/cli/cli.h"
-#include "common/text/joined.h"
+#include "common/base/joined.h"
 
 namespace footing::ctl {
 namespace {

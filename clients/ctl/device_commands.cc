@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/display/device_table.h"
-#include "clients/ctl/display/live_screen.h"
-#include "clients/ctl/display/server_table.h"
+#include "clients/ctl/report/device_table.h"
+#include "clients/ctl/report/live_screen.h"
+#include "clients/ctl/report/server_table.h"
 #include "common/cli/cli.h"
 #include "common/wire/wire.h"
 

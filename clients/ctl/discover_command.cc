@@ -4,7 +4,7 @@
 
 #include "clients/ctl/commands.h"
 #include "common/cli/cli.h"
-#include "common/discovery/browser.h"
+#include "common/net/browser.h"
 
 namespace footing::ctl {
 namespace {

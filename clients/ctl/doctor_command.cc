@@ -2,7 +2,7 @@
 
 #include "clients/ctl/collect.h"
 #include "clients/ctl/commands.h"
-#include "clients/ctl/doctor/doctor.h"
+#include "clients/ctl/report/doctor.h"
 #include "common/cli/cli.h"
 
 namespace footing::ctl {

@@ -7,10 +7,10 @@
 #include <iostream>
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/frames/camera_file.h"
 #include "common/guide/set_up.h"
-#include "common/text/utc.h"
+#include "common/base/utc.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {

@@ -2,8 +2,8 @@
 
 #include "clients/ctl/guided.h"
 #include "common/guide/set_up.h"
-#include "common/text/utc.h"
-#include "common/units/units.h"
+#include "common/base/utc.h"
+#include "common/base/units.h"
 
 namespace footing::ctl {
 namespace {

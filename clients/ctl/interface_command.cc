@@ -3,7 +3,7 @@
 
 #include "clients/ctl/commands.h"
 #include "common/cli/cli.h"
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
 

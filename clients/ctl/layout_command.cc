@@ -6,7 +6,7 @@
 #include "clients/ctl/guided.h"
 #include "common/board/layout.h"
 #include "common/cli/cli.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {

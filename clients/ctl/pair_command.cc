@@ -4,9 +4,9 @@
 
 #include "clients/ctl/collect.h"
 #include "clients/ctl/commands.h"
-#include "clients/ctl/display/device_table.h"
-#include "clients/ctl/doctor/doctor.h"
-#include "clients/ctl/pairing/pairing.h"
+#include "clients/ctl/report/device_table.h"
+#include "clients/ctl/report/doctor.h"
+#include "clients/ctl/report/pairing.h"
 #include "common/cli/cli.h"
 
 namespace footing::ctl {

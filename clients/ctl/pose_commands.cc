@@ -3,7 +3,7 @@
 
 #include "clients/ctl/commands.h"
 #include "common/cli/cli.h"
-#include "common/subject/subject.h"
+#include "common/runtime/subject.h"
 
 namespace footing::ctl {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "clients/ctl/display/find_device.h"
-#include "common/clock/clock.h"
-#include "common/transport/client.h"
-#include "common/transport/run_folder.h"
+#include "clients/ctl/report/find_device.h"
+#include "common/runtime/clock.h"
+#include "common/net/client.h"
+#include "common/net/run_folder.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/device.h"
 #include "common/stream/server_stats.h"
 #include "common/stream/setup.h"
-#include "common/timer/run_until.h"
-#include "common/transport/address.h"
+#include "common/runtime/run_until.h"
+#include "common/net/address.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::ctl {

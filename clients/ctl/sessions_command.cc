@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/display/format.h"
+#include "clients/ctl/report/format.h"
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/transport/address_or_default.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/net/address_or_default.h"
+#include "common/base/units.h"
 
 namespace footing::ctl {
 namespace {

@@ -4,14 +4,14 @@
 #include <string>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/display/qr_code.h"
+#include "clients/ctl/report/qr_code.h"
 #include "common/cli/cli.h"
-#include "common/tls/fingerprint.h"
-#include "common/tls/identity.h"
-#include "common/tls/known_servers.h"
-#include "common/tls/places.h"
-#include "common/transport/address.h"
-#include "common/transport/server_trust.h"
+#include "common/net/fingerprint.h"
+#include "common/net/identity.h"
+#include "common/net/known_servers.h"
+#include "common/net/places.h"
+#include "common/net/address.h"
+#include "common/net/server_trust.h"
 
 namespace footing::ctl {
 namespace {

@@ -9,10 +9,10 @@
 #include <optional>
 
 #include "clients/game/messages.h"
-#include "common/clock/clock.h"
-#include "common/transport/client.h"
-#include "common/transport/run_folder.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/net/client.h"
+#include "common/net/run_folder.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::game {

@@ -4,8 +4,8 @@
 
 #include "clients/game/report.h"
 #include "clients/game/rules/director.h"
-#include "common/result/result.h"
-#include "common/transport/address.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
 
 namespace footing::game {
 

@@ -5,8 +5,8 @@
 #include "clients/game/host.h"
 #include "clients/game/recount.h"
 #include "common/cli/cli.h"
-#include "common/log/log.h"
-#include "common/transport/address_or_default.h"
+#include "common/runtime/log.h"
+#include "common/net/address_or_default.h"
 
 namespace {
 

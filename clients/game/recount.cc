@@ -4,7 +4,7 @@
 
 #include "clients/game/messages.h"
 #include "clients/game/rules/scoring.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::game {

@@ -4,7 +4,7 @@
 
 #include "clients/game/report.h"
 #include "common/recording/recorded_session.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::game {
 

@@ -17,8 +17,8 @@
 #include "common/body/angle_deviation.h"
 #include "common/cli/cli.h"
 #include "common/recording/repair.h"
-#include "common/text/json_text.h"
-#include "common/transport/address.h"
+#include "common/base/json_text.h"
+#include "common/net/address.h"
 
 namespace footing::log_client {
 namespace {

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::log_client {
 

@@ -8,7 +8,7 @@
 
 #include "common/recording/mapped_file.h"
 #include "common/recording/schema.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::log_client {
 namespace {

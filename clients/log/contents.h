@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/mcap/walk.h"
-#include "common/result/result.h"
+#include "common/recording/walk.h"
+#include "common/base/result.h"
 
 namespace footing::log_client {
 

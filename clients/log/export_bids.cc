@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "clients/log/output_folder.h"
-#include "common/bids/recorded_motion.h"
-#include "common/bids/tables.h"
-#include "common/config/data_file.h"
+#include "common/recording/recorded_motion.h"
+#include "common/recording/tables.h"
+#include "common/runtime/data_file.h"
 #include "common/recording/output_file.h"
 #include "common/recording/recorded_session.h"
 

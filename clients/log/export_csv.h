@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::log_client {
 

@@ -6,9 +6,9 @@
 #include "clients/log/commands.h"
 #include "clients/log/contents.h"
 #include "common/cli/cli.h"
-#include "common/text/json_text.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/json_text.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::log_client {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "clients/log/opensim.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 #include "footing/v1/character.pb.h"
 

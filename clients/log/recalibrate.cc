@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <set>
 
-#include "common/camera_pose/samples.h"
-#include "common/mcap/walk.h"
-#include "common/mcap/writer.h"
+#include "common/camera/samples.h"
+#include "common/recording/walk.h"
+#include "common/recording/writer.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
 #include "common/wire/wire.h"

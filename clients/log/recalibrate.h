@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::log_client {
 

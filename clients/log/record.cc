@@ -10,11 +10,11 @@
 #include <memory>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/config/data_file.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/data_file.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/server_recorder.h"
-#include "common/timer/timer.h"
+#include "common/runtime/timer.h"
 
 namespace footing::log_client {
 namespace {

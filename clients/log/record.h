@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
-#include "common/transport/address.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
 
 namespace footing::log_client {
 

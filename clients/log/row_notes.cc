@@ -8,10 +8,10 @@
 
 #include "common/body/angle_deviation.h"
 #include "common/stream/device.h"
-#include "common/text/number.h"
-#include "common/text/utc.h"
-#include "common/units/instant.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/utc.h"
+#include "common/base/instant.h"
+#include "common/base/units.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
 

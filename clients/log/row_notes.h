@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/mcap/records.h"
+#include "common/recording/records.h"
 
 namespace footing::log_client {
 

@@ -9,8 +9,8 @@
 
 #include "clients/log/commands.h"
 #include "common/cli/cli.h"
-#include "common/playback/recording_server.h"
-#include "common/transport/address.h"
+#include "common/recording/recording_server.h"
+#include "common/net/address.h"
 
 namespace footing::log_client {
 namespace {

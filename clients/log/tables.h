@@ -11,9 +11,9 @@
 
 #include "clients/log/csv_table.h"
 #include "clients/log/row_notes.h"
-#include "common/mcap/walk.h"
+#include "common/recording/walk.h"
 #include "common/recording/schema.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::log_client {
 

@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "clients/relay/links/broker_address.h"
-#include "clients/relay/links/login_file.h"
+#include "clients/relay/broker_address.h"
+#include "clients/relay/login_file.h"
 
 namespace footing::relay {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "clients/relay/links/nats_link.h"
-#include "common/monitoring/metrics_endpoint.h"
-#include "common/result/result.h"
+#include "clients/relay/nats_link.h"
+#include "common/net/metrics_endpoint.h"
+#include "common/base/result.h"
 
 /// Options that both subcommands have, and how both run.
 namespace footing::relay {

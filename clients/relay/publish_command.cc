@@ -3,14 +3,14 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/relay/commands.h"
-#include "clients/relay/links/broker_address.h"
-#include "clients/relay/links/login_file.h"
+#include "clients/relay/broker_address.h"
+#include "clients/relay/login_file.h"
 #include "clients/relay/options.h"
-#include "clients/relay/service/channels.h"
-#include "clients/relay/service/metrics.h"
-#include "clients/relay/service/publisher.h"
+#include "clients/relay/channels.h"
+#include "clients/relay/metrics.h"
+#include "clients/relay/publisher.h"
 #include "common/cli/cli.h"
-#include "common/text/json_text.h"
+#include "common/base/json_text.h"
 
 namespace footing::relay {
 namespace {

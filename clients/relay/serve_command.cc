@@ -4,11 +4,11 @@
 
 #include "clients/relay/commands.h"
 #include "clients/relay/options.h"
-#include "clients/relay/service/edge.h"
-#include "clients/relay/service/metrics.h"
+#include "clients/relay/edge.h"
+#include "clients/relay/metrics.h"
 #include "common/cli/cli.h"
-#include "common/text/json_text.h"
-#include "common/transport/exposure.h"
+#include "common/base/json_text.h"
+#include "common/net/exposure.h"
 
 namespace footing::relay {
 namespace {

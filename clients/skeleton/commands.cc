@@ -4,19 +4,19 @@
 #include <iostream>
 #include <memory>
 
-#include "clients/skeleton/clips/synthetic_clip.h"
-#include "clients/skeleton/service/receiver.h"
-#include "clients/skeleton/service/sender.h"
-#include "clients/skeleton/service/statistics.h"
-#include "clients/skeleton/service/udp.h"
-#include "clients/skeleton/web/model_files.h"
+#include "clients/skeleton/tracking/synthetic_clip.h"
+#include "clients/skeleton/receiver.h"
+#include "clients/skeleton/sender.h"
+#include "clients/skeleton/statistics.h"
+#include "clients/skeleton/udp.h"
+#include "clients/skeleton/model_files.h"
 #include "common/cli/cli.h"
-#include "common/config/data_file.h"
-#include "common/log/log.h"
-#include "common/text/json_text.h"
-#include "common/transport/address_or_default.h"
-#include "common/transport/socket.h"
-#include "common/units/units.h"
+#include "common/runtime/data_file.h"
+#include "common/runtime/log.h"
+#include "common/base/json_text.h"
+#include "common/net/address_or_default.h"
+#include "common/net/socket.h"
+#include "common/base/units.h"
 
 namespace footing::skeleton {
 namespace {

@@ -1,6 +1,6 @@
 #include "clients/skeleton/commands.h"
 #include "common/cli/cli.h"
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(

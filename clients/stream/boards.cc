@@ -7,7 +7,7 @@
 #include "clients/stream/feeds.h"
 #include "clients/stream/rendered_hands.h"
 #include "common/body/held_frame.h"
-#include "common/virtual/sensors/held_device.h"
+#include "common/virtual/devices/held_device.h"
 
 namespace footing::stream_client {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "clients/stream/body_stage.h"
 #include "clients/stream/plan.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/held_device.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/held_device.h"
 
 namespace footing::stream_client {
 

@@ -1,6 +1,6 @@
 #include "clients/stream/boards_command.h"
 
-#include "common/virtual/sensor_options/sensor_options.h"
+#include "common/virtual/options/sensor_options.h"
 
 namespace footing::stream_client {
 namespace {

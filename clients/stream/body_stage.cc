@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "common/board/geometry.h"
-#include "common/config/data_file.h"
-#include "common/log/log.h"
-#include "common/units/units.h"
-#include "common/virtual/choreography/perform.h"
+#include "common/runtime/data_file.h"
+#include "common/runtime/log.h"
+#include "common/base/units.h"
+#include "common/virtual/people/perform.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/motion_files/load.h"
+#include "common/virtual/options/load.h"
 
 namespace footing::stream_client {
 namespace {

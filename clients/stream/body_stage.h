@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/base/result.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/scene.h"
 
 namespace footing::stream_client {
 

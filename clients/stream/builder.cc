@@ -5,10 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/wrists/accelerometer.h"
-#include "common/virtual/wrists/hand_motion.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/accelerometer.h"
+#include "common/virtual/devices/hand_motion.h"
 
 namespace footing::stream_client {
 namespace {

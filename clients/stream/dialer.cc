@@ -6,11 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/device_link/device_link.h"
-#include "common/log/log.h"
-#include "common/timer/timer.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/net/device_link.h"
+#include "common/runtime/log.h"
+#include "common/runtime/timer.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 #include "footing/v1/device.pb.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clients/stream/plan.h"
-#include "common/transport/address.h"
+#include "common/net/address.h"
 
 namespace footing::stream_client {
 

@@ -8,8 +8,8 @@
 #include "common/body/momentum.h"
 #include "common/body/points.h"
 #include "common/body/skeleton_points.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/kinect_skeleton.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/kinect_skeleton.h"
 
 namespace footing::stream_client {
 namespace {

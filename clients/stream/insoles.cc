@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "clients/stream/feeds.h"
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/insole_cells.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/insole_cells.h"
 
 namespace footing::stream_client {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/wrists/accelerometer.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/accelerometer.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
 

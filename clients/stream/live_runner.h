@@ -5,7 +5,7 @@
 
 #include "clients/stream/plan.h"
 #include "clients/stream/runner.h"
-#include "common/virtual/wrists/hand_motion.h"
+#include "common/virtual/devices/hand_motion.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::stream_client {

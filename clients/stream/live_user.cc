@@ -5,9 +5,9 @@
 
 #include "common/stream/interface_roles.h"
 #include "common/stream/leg_turn.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/wrists/accelerometer.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/accelerometer.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
 

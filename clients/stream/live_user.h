@@ -8,10 +8,10 @@
 
 #include "clients/stream/plan.h"
 #include "common/stream/user_interface.h"
-#include "common/virtual/users/driver.h"
-#include "common/virtual/users/grip.h"
-#include "common/virtual/users/person.h"
-#include "common/virtual/users/range_acts.h"
+#include "common/virtual/people/driver.h"
+#include "common/virtual/people/grip.h"
+#include "common/virtual/people/person.h"
+#include "common/virtual/people/range_acts.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::stream_client {

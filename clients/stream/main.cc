@@ -13,12 +13,12 @@
 #include "clients/stream/user_command.h"
 #include "clients/stream/watch.h"
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/device_link/device_link.h"
-#include "common/log/log.h"
-#include "common/timer/timer.h"
-#include "common/transport/address_or_default.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/net/device_link.h"
+#include "common/runtime/log.h"
+#include "common/runtime/timer.h"
+#include "common/net/address_or_default.h"
+#include "common/base/units.h"
 
 namespace {
 

@@ -9,11 +9,11 @@
 #include "clients/stream/script.h"
 #include "clients/stream/stick.h"
 #include "clients/stream/table.h"
-#include "common/config/data_file.h"
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/wrists/accelerometer.h"
-#include "common/virtual/wrists/hand_motion.h"
+#include "common/runtime/data_file.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/accelerometer.h"
+#include "common/virtual/devices/hand_motion.h"
 
 namespace footing::stream_client {
 namespace {

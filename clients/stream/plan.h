@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clients/stream/simulated_device.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/contacts.h"
 #include "common/stream/hands.h"
 

@@ -17,10 +17,10 @@
 
 #include "clients/stream/feeds.h"
 #include "common/body/points.h"
-#include "common/exchange/flag.h"
+#include "common/runtime/flag.h"
 #include "common/frames/netpbm.h"
 #include "common/virtual/camera/render.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::stream_client {
 namespace {

@@ -6,7 +6,7 @@
 #include "clients/stream/body_stage.h"
 #include "clients/stream/plan.h"
 #include "common/frames/camera_file.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::stream_client {
 

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "clients/stream/recorded_device.h"
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 #include "common/recording/recorded_identity.h"
 #include "common/recording/recorded_session.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::stream_client {
 namespace {

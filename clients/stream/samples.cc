@@ -11,17 +11,17 @@
 
 #include "clients/stream/rendered_hands.h"
 #include "clients/stream/script.h"
-#include "common/config/data_file.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
-#include "common/virtual/choreography/course.h"
-#include "common/virtual/choreography/perform.h"
-#include "common/virtual/choreography/posture.h"
+#include "common/runtime/data_file.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
+#include "common/virtual/people/course.h"
+#include "common/virtual/people/perform.h"
+#include "common/virtual/people/posture.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/leg_solver.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/wrists/accelerometer.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/accelerometer.h"
 
 namespace footing::stream_client {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
-#include "common/virtual/wrists/hand_motion.h"
+#include "common/base/result.h"
+#include "common/virtual/devices/hand_motion.h"
 
 namespace footing::stream_client {
 

@@ -6,7 +6,7 @@
 
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::stream_client {
 namespace {

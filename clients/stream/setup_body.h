@@ -7,7 +7,7 @@
 
 #include "common/stream/device.h"
 #include "common/virtual/devices/balance_board.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::stream_client {
 

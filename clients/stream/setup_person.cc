@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/board/layout.h"
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 #include "common/stream/user_interface.h"
 #include "common/wire/wire.h"
 

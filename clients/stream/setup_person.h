@@ -11,7 +11,7 @@
 #include "clients/stream/plan.h"
 #include "clients/stream/setup_body.h"
 #include "common/stream/setup.h"
-#include "common/timer/timer.h"
+#include "common/runtime/timer.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::stream_client {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/virtual/wrists/hand_motion.h"
+#include "common/virtual/devices/hand_motion.h"
 
 namespace footing::stream_client {
 

@@ -1,8 +1,8 @@
 #include "clients/stream/table.h"
 
-#include "common/text/csv.h"
-#include "common/text/lines.h"
-#include "common/text/number.h"
+#include "common/base/csv.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
 
 namespace footing::stream_client {
 

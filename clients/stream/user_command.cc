@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/virtual/sensor_options/sensor_options.h"
+#include "common/virtual/options/sensor_options.h"
 
 namespace footing::stream_client {
 namespace {

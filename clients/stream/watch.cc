@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 
 namespace footing::stream_client {
 

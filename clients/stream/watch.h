@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/address.h"
-#include "common/transport/client.h"
+#include "common/net/address.h"
+#include "common/net/client.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::stream_client {

@@ -3,8 +3,8 @@
 
 #include "clients/study/commands.h"
 #include "clients/study/plan/phases.h"
-#include "common/config/data_file.h"
-#include "common/text/number.h"
+#include "common/runtime/data_file.h"
+#include "common/base/number.h"
 
 namespace footing::study {
 namespace {

@@ -6,12 +6,12 @@
 #include <set>
 #include <utility>
 
-#include "clients/study/journal/journal.h"
-#include "clients/study/journal/study_folder.h"
-#include "clients/study/ranges/ranges.h"
+#include "clients/study/session/journal.h"
+#include "clients/study/session/study_folder.h"
+#include "clients/study/plan/ranges.h"
 #include "common/cli/cli.h"
-#include "common/config/data_file.h"
-#include "common/text/json_text.h"
+#include "common/runtime/data_file.h"
+#include "common/base/json_text.h"
 
 namespace footing::study {
 namespace {

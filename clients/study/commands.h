@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
-#include "clients/study/records/trials.h"
-#include "common/result/result.h"
+#include "clients/study/report/trials.h"
+#include "common/base/result.h"
 
 namespace footing::study {
 

@@ -2,11 +2,11 @@
 #include <random>
 #include <utility>
 
-#include "clients/study/bundle/bundle.h"
+#include "clients/study/bundle.h"
 #include "clients/study/commands.h"
-#include "clients/study/journal/study_folder.h"
+#include "clients/study/session/study_folder.h"
 #include "common/cli/cli.h"
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 
 namespace footing::study {
 namespace {

@@ -3,18 +3,18 @@
 #include <utility>
 
 #include "clients/study/commands.h"
-#include "clients/study/journal/study_folder.h"
-#include "clients/study/measure/range_feed.h"
+#include "clients/study/session/study_folder.h"
+#include "clients/study/session/range_feed.h"
 #include "clients/study/session/measure_ranges.h"
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/config/data_file.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/data_file.h"
 #include "common/recording/output_file.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
-#include "common/text/number.h"
-#include "common/text/utc.h"
-#include "common/transport/address_or_default.h"
+#include "common/base/number.h"
+#include "common/base/utc.h"
+#include "common/net/address_or_default.h"
 
 namespace footing::study {
 namespace {

@@ -7,7 +7,7 @@
 #include "clients/study/report/analysis.h"
 #include "clients/study/report/page.h"
 #include "common/recording/output_file.h"
-#include "common/statistics_options/statistics_options.h"
+#include "common/cli/statistics_options.h"
 
 namespace footing::study {
 namespace {

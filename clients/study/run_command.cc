@@ -5,8 +5,8 @@
 #include "clients/study/commands.h"
 #include "clients/study/session/run_session.h"
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/transport/address_or_default.h"
+#include "common/runtime/clock.h"
+#include "common/net/address_or_default.h"
 
 namespace footing::study {
 namespace {

@@ -7,10 +7,10 @@
 #include "clients/study/commands.h"
 #include "clients/study/plan/phases.h"
 #include "clients/study/report/latency.h"
-#include "clients/study/simulate/simulate_study.h"
-#include "common/clock/clock.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "clients/study/simulate_study.h"
+#include "common/runtime/clock.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::study {
 namespace {

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "clients/study/commands.h"
-#include "clients/study/screen/screen_message.h"
+#include "clients/study/plan/screen_message.h"
 #include "clients/study/session/console.h"
 #include "common/cli/cli.h"
-#include "common/transport/framed_connection.h"
+#include "common/net/framed_connection.h"
 
 namespace footing::study {
 namespace {

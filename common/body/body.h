@@ -7,7 +7,7 @@
 #include "common/body/landmarks.h"
 #include "common/body/segments.h"
 #include "common/body/skeleton.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::body {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::body {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::body {
 namespace {

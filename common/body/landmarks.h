@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "common/body/skeleton.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::body {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "common/result/result.h"
-#include "common/units/angle.h"
-#include "common/units/units.h"
+#include "common/base/result.h"
+#include "common/base/angle.h"
+#include "common/base/units.h"
 
 namespace footing::body {
 namespace {

@@ -8,8 +8,8 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/body/y_up.h"
-#include "common/rotation/rotation.h"
-#include "common/units/units.h"
+#include "common/base/rotation.h"
+#include "common/base/units.h"
 
 namespace footing::body {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 /// What every program's command line has in common.
 namespace footing::cli {

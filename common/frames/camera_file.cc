@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "common/config/data_file.h"
-#include "common/text/json_text.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/runtime/data_file.h"
+#include "common/base/json_text.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::frames {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
-#include "common/sphere/find.h"
+#include "common/base/result.h"
+#include "common/camera/find.h"
 #include "common/stream/device.h"
 
 namespace footing::frames {

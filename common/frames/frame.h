@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/sphere/image.h"
+#include "common/camera/image.h"
 
 namespace footing::frames {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 #include "common/frames/netpbm.h"
 
 namespace footing::frames {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/frames/frame.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::frames {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "common/frames/frame.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::frames {
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "common/config/data_file.h"
-#include "common/config/write_file.h"
+#include "common/runtime/data_file.h"
+#include "common/runtime/write_file.h"
 #include "common/frames/camera_file.h"
 
 namespace footing::frames {

@@ -4,8 +4,8 @@
 #include "common/guide/acceptance.h"
 #include "common/guide/layout.h"
 #include "common/guide/pick.h"
-#include "common/text/quantile.h"
-#include "common/units/units.h"
+#include "common/base/quantile.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 namespace {

@@ -6,7 +6,7 @@
 #include "common/board/layout.h"
 #include "common/guide/pick.h"
 #include "common/guide/weigh.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "common/board/layout.h"
-#include "common/camera_pose/samples.h"
+#include "common/camera/samples.h"
 #include "common/guide/layout.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "common/camera_pose/camera_pose.h"
-#include "common/camera_pose/marks.h"
+#include "common/camera/camera_pose.h"
+#include "common/camera/marks.h"
 #include "common/guide/step.h"
 
 namespace footing::guide {

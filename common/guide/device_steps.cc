@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/guide/pick.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 namespace {

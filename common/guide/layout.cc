@@ -5,7 +5,7 @@
 
 #include "common/board/geometry.h"
 #include "common/guide/pick.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 namespace {

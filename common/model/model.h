@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/model/sha256.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 /// What footing-train makes and the pose engine runs: named float32 tensors with their provenance,
 /// one *.fmodel file each (docs/models.md).

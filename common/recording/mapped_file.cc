@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "common/mcap/records.h"
+#include "common/recording/records.h"
 
 namespace footing::recording {
 

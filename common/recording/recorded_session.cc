@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "common/mcap/walk.h"
-#include "common/transport/tick_rate.h"
-#include "common/units/instant.h"
+#include "common/recording/walk.h"
+#include "common/net/tick_rate.h"
+#include "common/base/instant.h"
 
 namespace footing::recording {
 namespace {

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "common/mcap/records.h"
+#include "common/recording/records.h"
 #include "common/recording/mapped_file.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::recording {

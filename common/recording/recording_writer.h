@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
-#include "common/mcap/writer.h"
+#include "common/recording/writer.h"
 #include "common/recording/output_file.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::recording {
 

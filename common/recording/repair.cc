@@ -4,7 +4,7 @@
 #include <map>
 #include <system_error>
 
-#include "common/mcap/writer.h"
+#include "common/recording/writer.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
 #include "common/recording/schema.h"

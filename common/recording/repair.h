@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "common/mcap/walk.h"
-#include "common/result/result.h"
+#include "common/recording/walk.h"
+#include "common/base/result.h"
 
 namespace footing::recording {
 

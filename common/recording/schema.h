@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/mcap/records.h"
-#include "common/result/result.h"
+#include "common/recording/records.h"
+#include "common/base/result.h"
 
 namespace footing::recording {
 

@@ -8,9 +8,9 @@
 
 #include "common/recording/recording_writer.h"
 #include "common/recording/stream_recorder.h"
-#include "common/result/result.h"
-#include "common/transport/address.h"
-#include "common/transport/client.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
+#include "common/net/client.h"
 
 namespace footing::recording {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "common/recording/recording_writer.h"
-#include "common/result/result.h"
-#include "common/transport/client.h"
+#include "common/base/result.h"
+#include "common/net/client.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::recording {

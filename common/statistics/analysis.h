@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/samples.h"
 #include "common/statistics/steel.h"
 #include "common/statistics/study_table.h"

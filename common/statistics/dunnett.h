@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/samples.h"
 
 namespace footing::statistics {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/moments.h"
 
 namespace footing::statistics {

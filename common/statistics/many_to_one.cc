@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/special.h"
 
 namespace footing::statistics {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 /// Quantiles of what a study reports: linear between the two nearest values, as in R (type 7) and
 /// NumPy, so that a median is the mean of the two values in the middle. Those of common/text are

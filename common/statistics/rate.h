@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/samples.h"
 
 /// Rates of counted events: how many times more often something happens than with the control.

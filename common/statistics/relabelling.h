@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/samples.h"
 
 /// Tests by relabelling: where nothing differs, every assignment of labels to values is as likely

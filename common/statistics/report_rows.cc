@@ -6,7 +6,7 @@
 #include "common/statistics/dunnett.h"
 #include "common/statistics/many_to_one.h"
 #include "common/statistics/within_subject.h"
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::statistics {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/relabelling.h"
 #include "common/statistics/samples.h"
 

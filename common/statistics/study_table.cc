@@ -5,8 +5,8 @@
 #include <set>
 
 #include "common/statistics/table_rows.h"
-#include "common/text/joined.h"
-#include "common/text/lines.h"
+#include "common/base/joined.h"
+#include "common/base/lines.h"
 
 namespace footing::statistics {
 namespace {

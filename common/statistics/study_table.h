@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/statistics/samples.h"
 
 namespace footing::statistics {

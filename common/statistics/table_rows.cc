@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "common/statistics/rate.h"
-#include "common/text/csv.h"
-#include "common/text/lines.h"
-#include "common/text/number.h"
+#include "common/base/csv.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
 
 namespace footing::statistics {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "common/text/utf8.h"
+#include "common/base/utf8.h"
 
 namespace footing::stream {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "common/units/time.h"
+#include "common/base/time.h"
 
 namespace footing::stream {
 

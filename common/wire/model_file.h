@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "common/model/model.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::wire {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "common/text/utf8.h"
+#include "common/base/utf8.h"
 
 namespace footing::wire {
 

@@ -4,7 +4,7 @@
 
 #include "common/recording/recording_writer.h"
 #include "common/recording/stream_recorder.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::test {

@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/transport/address.h"
+#include "common/runtime/clock.h"
+#include "common/net/address.h"
 
 namespace footing::device_faults {
 namespace {

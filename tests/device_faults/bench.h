@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/client.h"
+#include "common/net/client.h"
 #include "tests/device_faults/model.h"
 #include "tests/device_faults/node.h"
 #include "tests/device_faults/program.h"

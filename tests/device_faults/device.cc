@@ -1,7 +1,7 @@
 #include <chrono>
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "tests/device_faults/bench.h"
 
 namespace footing::device_faults {

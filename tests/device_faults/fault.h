@@ -11,7 +11,7 @@
 #include <memory>
 #include <set>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "tests/device_faults/bench.h"
 
 namespace footing::device_faults {

@@ -1,4 +1,4 @@
-#include "common/transport/client.h"
+#include "common/net/client.h"
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <string>
 
-#include "common/timer/timer.h"
-#include "common/transport/framing.h"
+#include "common/runtime/timer.h"
+#include "common/net/framing.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/simulated_time.h"
 

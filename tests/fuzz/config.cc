@@ -1,10 +1,10 @@
-#include "common/config/config.h"
+#include "common/runtime/config.h"
 
 #include <string>
 
-#include "common/config/lines_of_keys.h"
-#include "common/transport/access.h"
-#include "common/transport/address.h"
+#include "common/runtime/lines_of_keys.h"
+#include "common/net/access.h"
+#include "common/net/address.h"
 #include "tests/fuzz/input.h"
 
 /// Any text as a config file, as settings, as an address and as a list of clients: taken or refused

@@ -1,7 +1,7 @@
 #include <deque>
 
 #include "common/virtual/devices/wiimote.h"
-#include "daemon/sensor/kinds/registry/kind.h"
+#include "daemon/sensor/kinds/kind.h"
 #include "tests/fuzz/input.h"
 
 /// A simulated Wiimote whose answers are lost, changed or late as the input says, while things are

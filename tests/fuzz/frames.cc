@@ -2,8 +2,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/tls/first_bytes.h"
-#include "common/transport/framing.h"
+#include "common/net/first_bytes.h"
+#include "common/net/framing.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/pieces.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/sensor/kinds/registry/kind.h"
+#include "daemon/sensor/kinds/kind.h"
 
 #include "tests/fuzz/input.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/sensor/calibration/move.h"
+#include "daemon/sensor/reports/move.h"
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
-#include "clients/skeleton/osc/osc.h"
+#include "clients/skeleton/tracking/osc.h"
 
 #include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "clients/skeleton/dialects/decoder.h"
-#include "clients/skeleton/gates/person_gate.h"
+#include "clients/skeleton/tracking/decoder.h"
+#include "clients/skeleton/tracking/person_gate.h"
 #include "tests/fuzz/input.h"
 
 namespace {

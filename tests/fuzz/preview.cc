@@ -1,4 +1,4 @@
-#include "common/preview/preview.h"
+#include "common/camera/preview.h"
 
 #include <cmath>
 #include <optional>
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <variant>
 
-#include "common/preview/preview_reader.h"
+#include "common/camera/preview_reader.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/pieces.h"
 

@@ -4,13 +4,13 @@
 #include <limits>
 #include <string>
 
-#include "common/mcap/seek.h"
-#include "common/mcap/summary.h"
-#include "common/mcap/walk.h"
-#include "common/playback/seekable_recording.h"
-#include "common/playback/shift_stamps.h"
+#include "common/recording/seek.h"
+#include "common/recording/summary.h"
+#include "common/recording/walk.h"
+#include "common/recording/seekable_recording.h"
+#include "common/recording/shift_stamps.h"
 #include "common/recording/recorded_session.h"
-#include "common/transport/tick_rate.h"
+#include "common/net/tick_rate.h"
 #include "tests/fuzz/input.h"
 
 /// Any bytes as a recording: read by every reader, from end to end, by its index, and by one that

@@ -1,4 +1,4 @@
-#include "common/transport/session.h"
+#include "common/net/session.h"
 
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <string>
 
-#include "common/clock/clock.h"
-#include "common/timer/timer.h"
-#include "common/transport/framing.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timer.h"
+#include "common/net/framing.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/simulated_time.h"
 

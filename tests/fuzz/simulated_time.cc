@@ -9,9 +9,9 @@
 #include <thread>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/clock/timekeeper.h"
-#include "common/timer/run_until.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timekeeper.h"
+#include "common/runtime/run_until.h"
 #include "tests/fuzz/input.h"
 
 namespace footing::fuzz {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 #include "daemon/simulation/biped/mjcf.h"
 #include "daemon/simulation/biped/parameters.h"
 

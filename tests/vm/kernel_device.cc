@@ -10,7 +10,7 @@
 #include <string>
 
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "tests/vm/made_device.h"
 #include "tests/vm/ramp.h"
 #include "tests/vm/uhid_node.h"

@@ -1,6 +1,6 @@
 #include "tests/vm/made_device.h"
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/devices/balance_board.h"
 #include "common/virtual/devices/ps_move.h"
 #include "common/virtual/devices/wiimote.h"

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/transport/client.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/net/client.h"
+#include "common/base/units.h"
 #include "tests/vm/tally.h"
 
 namespace footing::vm {

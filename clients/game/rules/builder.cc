@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/track/centre_line.h"
+#include "common/body/centre_line.h"
 
 namespace footing::game {
 namespace {

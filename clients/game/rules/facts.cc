@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "clients/game/rules/piece.h"
-#include "common/track/centre_line.h"
-#include "common/units/units.h"
+#include "common/body/centre_line.h"
+#include "common/base/units.h"
 
 namespace footing::game {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/stream/track.h"
-#include "common/track/piece.h"
+#include "common/body/piece.h"
 
 /// The terrain editor (gait paper, section 8.2 and figure 13): "create a slope by inclining the
 /// Wiimote vertically, a curve by inclining the Wiimote sideways, and a step by pushing button A

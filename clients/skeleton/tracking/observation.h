@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "clients/skeleton/gates/person_gate.h"
-#include "clients/skeleton/joints/joints.h"
+#include "clients/skeleton/tracking/person_gate.h"
+#include "clients/skeleton/tracking/joints.h"
 #include "common/stream/hands.h"
 
 namespace footing::skeleton {

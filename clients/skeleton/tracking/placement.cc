@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::skeleton {
 namespace {

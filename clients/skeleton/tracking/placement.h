@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <span>
 
-#include "clients/skeleton/joints/joints.h"
-#include "common/result/result.h"
+#include "clients/skeleton/tracking/joints.h"
+#include "common/base/result.h"
 
 namespace footing::skeleton {
 

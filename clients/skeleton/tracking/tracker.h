@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "clients/skeleton/dialects/decoder.h"
-#include "clients/skeleton/gates/person_gate.h"
-#include "clients/skeleton/osc/osc.h"
+#include "clients/skeleton/tracking/decoder.h"
+#include "clients/skeleton/tracking/person_gate.h"
+#include "clients/skeleton/tracking/osc.h"
 #include "clients/skeleton/tracking/observation.h"
 #include "clients/skeleton/tracking/placement.h"
 #include "clients/skeleton/tracking/sender_clock.h"

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "common/text/fnv.h"
+#include "common/base/fnv.h"
 
 namespace footing::study::plan {
 

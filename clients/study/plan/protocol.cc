@@ -6,7 +6,7 @@
 #include "clients/study/plan/reader.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
-#include "common/text/json_text.h"
+#include "common/base/json_text.h"
 
 namespace footing::study::plan {
 namespace {

@@ -1,7 +1,7 @@
 #include "clients/study/plan/reader.h"
 
-#include "common/text/joined.h"
-#include "common/text/json_text.h"
+#include "common/base/joined.h"
+#include "common/base/json_text.h"
 
 #include <algorithm>
 #include <set>

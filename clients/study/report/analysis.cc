@@ -7,7 +7,7 @@
 #include "clients/study/report/figure.h"
 #include "clients/study/report/measure_table.h"
 #include "clients/study/report/notes.h"
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::study::report {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "clients/study/report/measure_table.h"
 #include "common/statistics/quantile.h"
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::study::report {
 namespace {

@@ -8,7 +8,7 @@
 #include "clients/study/report/figure.h"
 #include "common/statistics/quantile.h"
 #include "common/stream/response.h"
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::study::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
-#include "clients/study/records/trials.h"
+#include "clients/study/report/trials.h"
 
 namespace footing::study::report {
 

@@ -11,7 +11,7 @@
 #include "clients/study/report/latency.h"
 #include "common/statistics/quantile.h"
 #include "common/stream/trial.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::study::report {
 namespace {

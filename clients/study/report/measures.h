@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
-#include "clients/study/records/trials.h"
+#include "clients/study/report/trials.h"
 #include "common/statistics/analysis.h"
 
 namespace footing::study::report {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "clients/study/report/measure_table.h"
-#include "common/text/joined.h"
+#include "common/base/joined.h"
 
 namespace footing::study::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "clients/study/report/figure.h"
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::study::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/records/trials.h"
+#include "clients/study/report/trials.h"
 #include "clients/study/report/latency.h"
 
 /// Tables of the report as HTML.

@@ -1,6 +1,6 @@
 #include "clients/study/session/active_time.h"
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::study {
 namespace {

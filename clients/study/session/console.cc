@@ -10,7 +10,7 @@
 #include <csignal>
 #include <iostream>
 
-#include "common/timer/timer.h"
+#include "common/runtime/timer.h"
 
 namespace footing::study {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "common/result/result.h"
-#include "common/timer/run_until.h"
+#include "common/base/result.h"
+#include "common/runtime/run_until.h"
 
 namespace footing::study {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "common/timer/timer.h"
-#include "common/transport/client.h"
+#include "common/runtime/timer.h"
+#include "common/net/client.h"
 
 namespace footing::study {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "common/text/number.h"
-#include "common/transport/client.h"
-#include "common/transport/run_folder.h"
+#include "common/base/number.h"
+#include "common/net/client.h"
+#include "common/net/run_folder.h"
 
 namespace footing::study {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "clients/study/measure/range_feed.h"
+#include "clients/study/session/range_feed.h"
 #include "clients/study/session/console.h"
-#include "common/result/result.h"
-#include "common/transport/address.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
 
 namespace footing::study {
 

@@ -2,19 +2,19 @@
 #include <cmath>
 #include <optional>
 
-#include "clients/study/gate/device_gate.h"
-#include "clients/study/journal/study_folder.h"
-#include "clients/study/records/trials.h"
+#include "clients/study/plan/device_gate.h"
+#include "clients/study/session/study_folder.h"
+#include "clients/study/report/trials.h"
 #include "clients/study/session/run_session.h"
 #include "clients/study/session/survey.h"
 #include "clients/study/session/trial_run.h"
 #include "clients/study/session/undo.h"
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/text/joined.h"
-#include "common/text/lines.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/joined.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::study {
 namespace {

@@ -2,11 +2,11 @@
 
 #include "clients/study/session/measure_ranges.h"
 #include "clients/study/session/run_session.h"
-#include "common/clock/clock.h"
-#include "common/config/data_file.h"
-#include "common/text/lines.h"
-#include "common/text/number.h"
-#include "common/text/utc.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/data_file.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
+#include "common/base/utc.h"
 
 namespace footing::study {
 namespace {

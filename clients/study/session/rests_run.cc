@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "clients/study/session/run_session.h"
-#include "common/clock/clock.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::study {
 namespace {

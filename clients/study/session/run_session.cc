@@ -4,13 +4,13 @@
 
 #include <utility>
 
-#include "clients/study/journal/lock.h"
-#include "clients/study/journal/study_folder.h"
-#include "clients/study/records/trials.h"
+#include "clients/study/session/lock.h"
+#include "clients/study/session/study_folder.h"
+#include "clients/study/report/trials.h"
 #include "clients/study/session/survey_screen.h"
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/text/number.h"
+#include "common/runtime/clock.h"
+#include "common/base/number.h"
 
 namespace footing::study {
 namespace {

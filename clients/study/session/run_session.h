@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/records/progress.h"
+#include "clients/study/report/progress.h"
 #include "clients/study/session/session_context.h"
 #include "clients/study/session/trial_events.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/study.h"
 
 namespace footing::study {

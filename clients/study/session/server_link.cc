@@ -3,8 +3,8 @@
 #include <optional>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/units.h"
 
 namespace footing::study {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "clients/study/session/console.h"
 #include "clients/study/session/held_lease.h"
-#include "common/transport/client.h"
+#include "common/net/client.h"
 
 namespace footing::study {
 

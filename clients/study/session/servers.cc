@@ -6,7 +6,7 @@
 
 #include "clients/study/session/server_link.h"
 #include "common/stream/leg_turn.h"
-#include "common/transport/run_folder.h"
+#include "common/net/run_folder.h"
 #include "common/wire/wire.h"
 
 namespace footing::study {

@@ -8,14 +8,14 @@
 
 #include "clients/study/session/active_time.h"
 #include "clients/study/session/console.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/device.h"
 #include "common/stream/gait.h"
 #include "common/stream/study.h"
 #include "common/stream/track.h"
 #include "common/stream/trial.h"
 #include "common/stream/user_interface.h"
-#include "common/transport/address.h"
+#include "common/net/address.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::study {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/journal/journal.h"
+#include "clients/study/session/journal.h"
 #include "clients/study/plan/phases.h"
 #include "clients/study/plan/protocol.h"
 #include "clients/study/session/console.h"
 #include "clients/study/session/servers.h"
-#include "common/transport/address.h"
+#include "common/net/address.h"
 
 namespace footing::study {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "clients/study/records/progress.h"
+#include "clients/study/report/progress.h"
 #include "clients/study/session/respondent.h"
 #include "clients/study/session/survey_screen.h"
 

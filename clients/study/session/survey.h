@@ -4,7 +4,7 @@
 
 #include "clients/study/plan/survey_items.h"
 #include "clients/study/session/session_context.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::study {
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/transport/framed_connection.h"
-#include "common/transport/listener.h"
+#include "common/net/framed_connection.h"
+#include "common/net/listener.h"
 
 namespace footing::study {
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "clients/study/screen/screen_message.h"
+#include "clients/study/plan/screen_message.h"
 #include "clients/study/session/console.h"
-#include "common/result/result.h"
-#include "common/transport/address.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
 
 namespace footing::study {
 

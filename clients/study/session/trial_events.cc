@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/stream/response.h"
-#include "common/text/number.h"
+#include "common/base/number.h"
 #include "common/wire/wire.h"
 
 namespace footing::study {

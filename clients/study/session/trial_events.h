@@ -9,7 +9,7 @@
 #include "clients/study/session/servers.h"
 #include "clients/study/session/session_context.h"
 #include "clients/study/session/trial_tracker.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::study {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/server_recorder.h"
-#include "common/timer/timer.h"
+#include "common/runtime/timer.h"
 
 namespace footing::study {
 namespace {

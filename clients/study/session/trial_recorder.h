@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "clients/study/session/console.h"
-#include "common/mcap/records.h"
-#include "common/result/result.h"
-#include "common/transport/address.h"
+#include "common/recording/records.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
 
 namespace footing::study {
 

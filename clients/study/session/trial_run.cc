@@ -5,14 +5,14 @@
 #include <optional>
 #include <utility>
 
-#include "clients/study/gate/device_gate.h"
-#include "clients/study/journal/study_folder.h"
-#include "clients/study/records/trials.h"
+#include "clients/study/plan/device_gate.h"
+#include "clients/study/session/study_folder.h"
+#include "clients/study/report/trials.h"
 #include "clients/study/session/trial_events.h"
 #include "clients/study/session/trial_recorder.h"
 #include "clients/study/session/undo.h"
-#include "common/clock/clock.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/units.h"
 
 namespace footing::study {
 namespace {

@@ -8,7 +8,7 @@
 #include "clients/study/session/servers.h"
 #include "clients/study/session/session_context.h"
 #include "clients/study/session/trial_events.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::study {
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "clients/study/records/trials.h"
+#include "clients/study/report/trials.h"
 
 namespace footing::study {
 namespace {

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::view {
 namespace {

@@ -11,9 +11,9 @@
 #include "clients/view/app/pose_calibration.h"
 #include "clients/view/app/preview_link.h"
 #include "clients/view/scene/show.h"
-#include "common/exchange/bounded_queue.h"
-#include "common/exchange/flag.h"
-#include "common/exchange/latest.h"
+#include "common/runtime/bounded_queue.h"
+#include "common/runtime/flag.h"
+#include "common/runtime/latest.h"
 
 namespace footing::view {
 

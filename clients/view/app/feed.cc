@@ -1,7 +1,7 @@
 #include "clients/view/app/feed.h"
 
 #include "clients/view/app/translate.h"
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::view {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "clients/view/app/options.h"
 #include "clients/view/scene/update.h"
-#include "common/transport/address.h"
-#include "common/transport/client.h"
+#include "common/net/address.h"
+#include "common/net/client.h"
 
 namespace footing::view {
 

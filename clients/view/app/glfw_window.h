@@ -9,7 +9,7 @@
 
 #include "clients/view/app/options.h"
 #include "clients/view/scene/camera.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::view {
 

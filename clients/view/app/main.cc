@@ -9,8 +9,8 @@
 #include "clients/view/app/text_view.h"
 #include "clients/view/app/window.h"
 #include "common/cli/cli.h"
-#include "common/log/log.h"
-#include "common/transport/address_or_default.h"
+#include "common/runtime/log.h"
+#include "common/net/address_or_default.h"
 
 namespace {
 

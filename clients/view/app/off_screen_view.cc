@@ -9,11 +9,11 @@
 #include "clients/view/render/off_screen.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/render/target.h"
-#include "common/clock/clock.h"
-#include "common/log/log.h"
-#include "common/text/number.h"
-#include "common/transport/run_folder.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
+#include "common/base/number.h"
+#include "common/net/run_folder.h"
+#include "common/base/units.h"
 
 namespace footing::view {
 namespace {

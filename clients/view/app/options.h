@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "clients/view/render/hud/hud.h"
-#include "clients/view/timeline/align.h"
-#include "common/transport/address.h"
+#include "clients/view/render/hud.h"
+#include "clients/view/scene/align.h"
+#include "common/net/address.h"
 #include "footing/v1/command.pb.h"
 
 namespace footing::view {

@@ -17,7 +17,7 @@
 #include <system_error>
 #include <vector>
 
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::view {
 namespace {

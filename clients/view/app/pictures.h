@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "clients/view/render/image.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::view {
 

@@ -8,8 +8,8 @@
 #include "clients/view/render/off_screen.h"
 #include "clients/view/render/play_picture.h"
 #include "clients/view/render/target.h"
-#include "clients/view/timeline/timeline_text.h"
-#include "common/log/log.h"
+#include "clients/view/scene/timeline_text.h"
+#include "common/runtime/log.h"
 
 namespace footing::view {
 namespace {

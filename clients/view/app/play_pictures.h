@@ -4,7 +4,7 @@
 
 #include "clients/view/app/options.h"
 #include "clients/view/app/play_session.h"
-#include "clients/view/render/hud/hud.h"
+#include "clients/view/render/hud.h"
 #include "clients/view/render/screen.h"
 
 namespace footing::view {

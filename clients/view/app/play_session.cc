@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "common/log/log.h"
-#include "common/text/number.h"
+#include "common/runtime/log.h"
+#include "common/base/number.h"
 
 namespace footing::view {
 namespace {

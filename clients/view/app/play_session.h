@@ -6,8 +6,8 @@
 
 #include "clients/view/app/options.h"
 #include "clients/view/app/recorded_show.h"
-#include "clients/view/timeline/align.h"
-#include "clients/view/timeline/play_head.h"
+#include "clients/view/scene/align.h"
+#include "clients/view/scene/play_head.h"
 
 namespace footing::view {
 

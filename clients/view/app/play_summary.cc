@@ -5,7 +5,7 @@
 
 #include "clients/view/app/summary.h"
 #include "clients/view/scene/words.h"
-#include "clients/view/timeline/timeline_text.h"
+#include "clients/view/scene/timeline_text.h"
 
 namespace footing::view {
 namespace {

@@ -9,10 +9,10 @@
 #include "clients/view/app/stop_signal.h"
 #include "clients/view/app/text_view.h"
 #include "clients/view/app/window.h"
-#include "clients/view/timeline/timeline_text.h"
-#include "common/clock/clock.h"
-#include "common/log/log.h"
-#include "common/units/units.h"
+#include "clients/view/scene/timeline_text.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
+#include "common/base/units.h"
 
 namespace footing::view {
 namespace {

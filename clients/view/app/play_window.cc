@@ -9,9 +9,9 @@
 #include "clients/view/app/play_summary.h"
 #include "clients/view/app/stop_signal.h"
 #include "clients/view/render/play_picture.h"
-#include "clients/view/timeline/play_keys.h"
-#include "common/clock/clock.h"
-#include "common/units/units.h"
+#include "clients/view/scene/play_keys.h"
+#include "common/runtime/clock.h"
+#include "common/base/units.h"
 
 namespace footing::view {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "clients/view/app/options.h"
 #include "clients/view/app/play_session.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::view {
 

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/frames/camera_file.h"
-#include "common/text/utc.h"
+#include "common/base/utc.h"
 #include "common/wire/wire.h"
 
 namespace footing::view {

@@ -8,7 +8,7 @@
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/update.h"
 #include "common/guide/set_up.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "footing/v1/command.pb.h"
 
 namespace footing::view {

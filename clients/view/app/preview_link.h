@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "clients/view/scene/camera_preview.h"
-#include "common/preview/preview_reader.h"
-#include "common/transport/address.h"
-#include "common/transport/socket.h"
+#include "common/camera/preview_reader.h"
+#include "common/net/address.h"
+#include "common/net/socket.h"
 
 namespace footing::view {
 

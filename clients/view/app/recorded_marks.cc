@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "clients/view/scene/trial_text.h"
-#include "common/playback/recorded_server.h"
-#include "common/units/instant.h"
-#include "common/units/units.h"
+#include "common/recording/recorded_server.h"
+#include "common/base/instant.h"
+#include "common/base/units.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "clients/view/timeline/timeline.h"
-#include "common/playback/seekable_recording.h"
-#include "common/result/result.h"
+#include "clients/view/scene/timeline.h"
+#include "common/recording/seekable_recording.h"
+#include "common/base/result.h"
 
 namespace footing::view {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "clients/view/app/translate.h"
-#include "common/units/time.h"
-#include "common/units/units.h"
+#include "common/base/time.h"
+#include "common/base/units.h"
 
 namespace footing::view {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "clients/view/app/recorded_marks.h"
 #include "clients/view/scene/show.h"
-#include "common/playback/seekable_recording.h"
+#include "common/recording/seekable_recording.h"
 
 namespace footing::view {
 

@@ -1,6 +1,6 @@
 #include "clients/view/app/subjects.h"
 
-#include "common/subject/subject.h"
+#include "common/runtime/subject.h"
 
 namespace footing::view {
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::view {
 namespace {

@@ -13,9 +13,9 @@
 #include "clients/view/app/summary.h"
 #include "clients/view/scene/show.h"
 #include "clients/view/scene/words.h"
-#include "common/clock/clock.h"
-#include "common/transport/run_folder.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/net/run_folder.h"
+#include "common/base/units.h"
 
 namespace footing::view {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "clients/view/app/options.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::view {
 

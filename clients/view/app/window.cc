@@ -13,8 +13,8 @@
 #include "clients/view/app/summary.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/scene/live_keys.h"
-#include "common/clock/clock.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/units.h"
 
 namespace footing::view {
 namespace {

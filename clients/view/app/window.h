@@ -1,7 +1,7 @@
 #pragma once
 
 #include "clients/view/app/options.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::view {
 

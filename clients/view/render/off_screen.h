@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::render {
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "clients/view/render/hud/overlay.h"
+#include "clients/view/render/overlay.h"
 #include "clients/view/scene/live_keys.h"
-#include "clients/view/timeline/play_keys.h"
+#include "clients/view/scene/play_keys.h"
 
 namespace footing::render {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "clients/view/render/hud/hud.h"
-#include "clients/view/render/hud/timeline_bar.h"
+#include "clients/view/render/hud.h"
+#include "clients/view/render/timeline_bar.h"
 #include "clients/view/render/screen.h"
 
 namespace footing::render {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "clients/view/render/handles.h"
-#include "common/preview/preview.h"
+#include "common/camera/preview.h"
 
 namespace footing::render {
 

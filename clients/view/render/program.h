@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "clients/view/render/gl.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::render {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "clients/view/render/hud/hud.h"
-#include "clients/view/render/hud/hud_layout.h"
+#include "clients/view/render/hud.h"
+#include "clients/view/render/hud_layout.h"
 #include "clients/view/render/preview_texture.h"
 #include "clients/view/render/world.h"
 

@@ -4,7 +4,7 @@
 
 #include "clients/view/render/handles.h"
 #include "clients/view/render/image.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::render {
 

@@ -8,7 +8,7 @@
 #include "clients/view/render/shadow_map.h"
 #include "clients/view/scene/course.h"
 #include "clients/view/scene/stage.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::render {
 

@@ -6,7 +6,7 @@
 #include "clients/view/scene/anatomy.h"
 #include "clients/view/scene/boards.h"
 #include "clients/view/scene/person.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 namespace {

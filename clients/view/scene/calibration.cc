@@ -7,8 +7,8 @@
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/stage.h"
 #include "common/board/geometry.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 namespace {

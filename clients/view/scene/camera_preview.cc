@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "clients/view/scene/interface_text.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/preview/preview.h"
+#include "common/camera/preview.h"
 
 /// What footing-camera sees, as it is shown in a corner.
 namespace footing::scene {

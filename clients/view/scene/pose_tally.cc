@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 namespace {

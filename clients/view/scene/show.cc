@@ -1,6 +1,6 @@
 #include "clients/view/scene/show.h"
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 

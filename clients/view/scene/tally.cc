@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/text/quantile.h"
-#include "common/units/time.h"
+#include "common/base/quantile.h"
+#include "common/base/time.h"
 
 namespace footing::scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "clients/view/scene/words.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 namespace {

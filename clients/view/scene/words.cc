@@ -9,8 +9,8 @@
 #include "clients/view/scene/notice_text.h"
 #include "clients/view/scene/study_text.h"
 #include "clients/view/scene/trial_text.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 namespace {

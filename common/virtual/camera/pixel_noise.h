@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::virtual_camera {
 

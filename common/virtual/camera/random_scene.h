@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/virtual/camera/scene.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::virtual_camera {
 

@@ -4,7 +4,7 @@
 
 #include "common/virtual/camera/canvas.h"
 #include "common/virtual/camera/scene.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::virtual_camera {
 

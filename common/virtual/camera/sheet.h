@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "common/virtual/camera/scene.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::virtual_camera {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 /// What is plugged into a Wiimote, as its registers and six data bytes: Nunchuk, Classic
 /// Controller, MotionPlus.

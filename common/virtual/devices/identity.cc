@@ -1,6 +1,6 @@
 #include "common/virtual/devices/identity.h"
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::virtual_devices {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/units/time.h"
-#include "common/units/units.h"
+#include "common/base/time.h"
+#include "common/base/units.h"
 
 namespace footing::virtual_devices {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <utility>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::virtual_devices {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/identity.h"
 

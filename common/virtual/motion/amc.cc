@@ -2,9 +2,9 @@
 #include <optional>
 #include <utility>
 
-#include "common/text/lines.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/rate.h"
 #include "common/virtual/motion/value.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 
 /// Acclaim skeleton (ASF) and motion (AMC), as the CMU database has them; y up, z ahead.

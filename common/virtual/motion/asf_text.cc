@@ -5,8 +5,8 @@
 #include <map>
 #include <optional>
 
-#include "common/text/lines.h"
-#include "common/text/number.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
 #include "common/virtual/motion/motion.h"
 
 namespace footing::motion {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/body/skeleton.h"
-#include "common/result/result.h"
-#include "common/units/units.h"
+#include "common/base/result.h"
+#include "common/base/units.h"
 
 namespace footing::motion {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/body/y_up.h"
-#include "common/text/lines.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/bvh_stem.h"
 #include "common/virtual/motion/rate.h"
 #include "common/virtual/motion/value.h"

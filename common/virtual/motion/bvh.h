@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 
 /// Biovision hierarchy (BVH): skeleton and motion in one text file; y up, z ahead, degrees.

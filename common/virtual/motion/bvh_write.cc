@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/body/y_up.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/bvh.h"
 
 namespace footing::motion {

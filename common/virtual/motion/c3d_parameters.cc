@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "common/text/lines.h"
+#include "common/base/lines.h"
 
 namespace footing::motion {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/c3d_reader.h"
 
 namespace footing::motion {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/body/kinematics.h"
-#include "common/text/quantile.h"
-#include "common/units/angle.h"
-#include "common/units/units.h"
+#include "common/base/quantile.h"
+#include "common/base/angle.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/rate.h"
 #include "common/virtual/motion/signal.h"
 

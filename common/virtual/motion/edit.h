@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "common/body/landmarks.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 
 /// What is done to a motion before it is used.

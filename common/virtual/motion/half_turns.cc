@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/body/landmarks.h"
-#include "common/units/angle.h"
-#include "common/units/units.h"
+#include "common/base/angle.h"
+#include "common/base/units.h"
 
 namespace footing::motion {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "common/rotation/rotation.h"
+#include "common/base/rotation.h"
 
 namespace footing::motion {
 namespace {

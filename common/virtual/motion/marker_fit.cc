@@ -10,7 +10,7 @@
 #include "common/body/body.h"
 #include "common/body/fit.h"
 #include "common/body/kinematics.h"
-#include "common/rotation/rotation.h"
+#include "common/base/rotation.h"
 #include "common/virtual/motion/joint_centres.h"
 #include "common/virtual/motion/marker_carriers.h"
 

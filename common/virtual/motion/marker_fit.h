@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/body/segments.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/marker_sets.h"
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"

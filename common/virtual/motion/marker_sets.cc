@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "common/text/joined.h"
-#include "common/text/lines.h"
+#include "common/base/joined.h"
+#include "common/base/lines.h"
 
 namespace footing::motion {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/markers.h"
 
 namespace footing::motion {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/body/body.h"
-#include "common/text/quantile.h"
+#include "common/base/quantile.h"
 #include "common/virtual/motion/joint_centres.h"
 #include "common/virtual/motion/marker_fit.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/body/y_up.h"
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::motion {
 

@@ -5,7 +5,7 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::motion {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "common/result/result.h"
-#include "common/units/units.h"
+#include "common/base/result.h"
+#include "common/base/units.h"
 
 namespace footing::motion {
 namespace {

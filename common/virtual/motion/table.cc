@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "common/text/lines.h"
-#include "common/text/number.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/rate.h"

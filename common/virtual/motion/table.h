@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 /// MOT and STO: OpenSim's tables of numbers over time, and the ground forces in them.
 namespace footing::motion {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/text/lines.h"
-#include "common/text/number.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/rate.h"
 #include "common/virtual/motion/value.h"

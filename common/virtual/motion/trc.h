@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/markers.h"
 
 /// TRC: marker places as text, a row a frame (Motion Analysis; OpenSim).

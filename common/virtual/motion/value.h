@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "common/text/number.h"
+#include "common/base/number.h"
 
 namespace footing::motion {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/listener.h"
+#include "common/net/listener.h"
 
 namespace footing::bench {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/transport/framing.h"
+#include "common/runtime/clock.h"
+#include "common/net/framing.h"
 
 namespace footing::bench {
 

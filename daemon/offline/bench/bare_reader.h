@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/transport/socket.h"
+#include "common/net/socket.h"
 
 namespace footing::bench {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "common/body/momentum.h"
-#include "common/clock/clock.h"
-#include "common/virtual/noise/random.h"
+#include "common/runtime/clock.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/bench/pairs.h"
 
 namespace footing::bench {

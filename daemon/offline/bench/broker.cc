@@ -14,7 +14,7 @@
 #include <sstream>
 #include <vector>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "daemon/offline/bench/waiting.h"
 
 namespace footing::bench {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "common/transport/address.h"
+#include "common/net/address.h"
 
 namespace footing::bench {
 

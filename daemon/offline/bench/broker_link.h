@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/transport/socket.h"
+#include "common/net/socket.h"
 #include "daemon/offline/bench/broker.h"
 
 namespace footing::bench {

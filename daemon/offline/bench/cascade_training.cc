@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "common/clock/clock.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/units.h"
 #include "daemon/offline/bench/fann_network.h"
 #include "daemon/offline/bench/row.h"
 #include "daemon/offline/learning/cascade.h"

@@ -3,9 +3,9 @@
 #include <numbers>
 #include <vector>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/statistics/dunnett.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/bench/pairs.h"
 
 namespace footing::bench {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/transport/server.h"
+#include "common/net/server.h"
 
 /// What footingd publishes in one tick with five devices: three Wiimotes and two Balance Boards at
 /// about 100 reports a second, so one sample and one raw report each, and their features.

@@ -1,8 +1,8 @@
 #include <memory>
 
-#include "common/clock/clock.h"
-#include "common/transport/framing.h"
-#include "common/transport/server.h"
+#include "common/runtime/clock.h"
+#include "common/net/framing.h"
+#include "common/net/server.h"
 #include "daemon/offline/bench/bare_fan_out.h"
 #include "daemon/offline/bench/example_tick.h"
 #include "daemon/offline/bench/pairs.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <thread>
 
-#include "common/exchange/flag.h"
+#include "common/runtime/flag.h"
 
 namespace footing::bench {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/text/quantile.h"
+#include "common/base/quantile.h"
 
 namespace footing::bench {
 

@@ -3,16 +3,16 @@
 #include <cmath>
 #include <vector>
 
-#include "common/clock/clock.h"
-#include "common/text/quantile.h"
+#include "common/runtime/clock.h"
+#include "common/base/quantile.h"
 #include "common/virtual/motion/motion.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/ground_reaction.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/ground_reaction.h"
 #include "daemon/offline/bench/pairs.h"
 #include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/learning/horizontal_com.h"
-#include "daemon/offline/timing/momentum_cost.h"
+#include "daemon/offline/compute/momentum_cost.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::bench {

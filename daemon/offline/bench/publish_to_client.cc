@@ -1,11 +1,11 @@
 #include <functional>
 #include <optional>
 
-#include "common/clock/clock.h"
-#include "common/text/quantile.h"
-#include "common/transport/client.h"
-#include "common/transport/framing.h"
-#include "common/transport/server.h"
+#include "common/runtime/clock.h"
+#include "common/base/quantile.h"
+#include "common/net/client.h"
+#include "common/net/framing.h"
+#include "common/net/server.h"
 #include "daemon/offline/bench/bare_fan_out.h"
 #include "daemon/offline/bench/bare_reader.h"
 #include "daemon/offline/bench/example_tick.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::bench {
 

@@ -1,9 +1,9 @@
-#include "common/clock/clock.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/units.h"
 #include "daemon/offline/bench/fann_network.h"
 #include "daemon/offline/bench/pairs.h"
 #include "daemon/offline/bench/row.h"
-#include "daemon/offline/eval/spirals/trials.h"
+#include "daemon/offline/eval/spirals_trials.h"
 #include "daemon/offline/learning/spirals.h"
 
 namespace footing::bench {

@@ -1,8 +1,8 @@
 #include <memory>
 
-#include "common/clock/clock.h"
-#include "common/text/quantile.h"
-#include "common/transport/server.h"
+#include "common/runtime/clock.h"
+#include "common/base/quantile.h"
+#include "common/net/server.h"
 #include "daemon/offline/bench/example_tick.h"
 #include "daemon/offline/bench/pairs.h"
 #include "daemon/offline/bench/viewer.h"

@@ -10,13 +10,13 @@
 #include <optional>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/text/quantile.h"
-#include "common/tls/context.h"
-#include "common/tls/identity.h"
-#include "common/transport/framed_connection.h"
-#include "common/transport/framing.h"
-#include "common/transport/listener.h"
+#include "common/runtime/clock.h"
+#include "common/base/quantile.h"
+#include "common/net/context.h"
+#include "common/net/identity.h"
+#include "common/net/framed_connection.h"
+#include "common/net/framing.h"
+#include "common/net/listener.h"
 #include "daemon/offline/bench/loop_thread.h"
 #include "daemon/offline/bench/pairs.h"
 #include "daemon/offline/bench/row.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/transport/socket.h"
+#include "common/net/socket.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::bench {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include "common/transport/address.h"
-#include "common/transport/framed_connection.h"
+#include "common/net/address.h"
+#include "common/net/framed_connection.h"
 
 namespace footing::bench {
 

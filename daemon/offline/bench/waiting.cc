@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::bench {
 

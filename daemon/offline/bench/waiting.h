@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "common/transport/address.h"
+#include "common/net/address.h"
 #include "daemon/offline/bench/loop_thread.h"
 
 namespace footing::bench {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "common/body/kinematics.h"
-#include "common/result/result.h"
-#include "common/text/quantile.h"
-#include "common/units/angle.h"
+#include "common/base/result.h"
+#include "common/base/quantile.h"
+#include "common/base/angle.h"
 
 namespace footing::learning {
 namespace {

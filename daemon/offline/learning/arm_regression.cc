@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/learning/ridge.h"
 #include "daemon/offline/learning/scaling.h"
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/model/model.h"
-#include "daemon/simulation/arms/arm_features.h"
-#include "daemon/simulation/arms/arm_model.h"
+#include "daemon/simulation/pose/arm_features.h"
+#include "daemon/simulation/pose/arm_model.h"
 
 namespace footing::learning {
 

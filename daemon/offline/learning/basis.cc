@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/learning/scaling.h"
 
 namespace footing::learning {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/ground_reaction.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/ground_reaction.h"
 #include "daemon/offline/learning/alignment.h"
 #include "daemon/simulation/momentum/estimate.h"
 

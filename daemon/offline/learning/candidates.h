@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/learning/quickprop.h"
 
 namespace footing::learning {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/result/result.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/result.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::learning {
 

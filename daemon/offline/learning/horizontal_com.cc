@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::learning {
 namespace {

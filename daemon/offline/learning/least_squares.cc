@@ -1,6 +1,6 @@
 #include "daemon/offline/learning/least_squares.h"
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::learning {
 namespace {

@@ -3,8 +3,8 @@
 #include <limits>
 #include <numeric>
 
-#include "common/result/result.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/result.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/learning/candidates.h"
 
 namespace footing::learning {

@@ -3,7 +3,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/learning/own_take.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 

@@ -6,11 +6,11 @@
 #include <sstream>
 #include <utility>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/sensors/body_course.h"
-#include "common/virtual/sensors/ground_reaction.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/body_course.h"
+#include "common/virtual/devices/ground_reaction.h"
+#include "common/virtual/devices/scene.h"
 
 namespace footing::learning {
 namespace {

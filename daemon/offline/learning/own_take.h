@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/body/body.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 #include "daemon/offline/learning/horizontal_com.h"
 #include "daemon/offline/learning/pose_regression.h"

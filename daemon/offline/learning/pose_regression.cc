@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/edit.h"
 #include "daemon/offline/learning/ridge.h"
 #include "daemon/offline/learning/scaling.h"

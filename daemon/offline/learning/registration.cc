@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/body/kinematics.h"
-#include "common/result/result.h"
-#include "common/text/quantile.h"
+#include "common/base/result.h"
+#include "common/base/quantile.h"
 #include "common/virtual/motion/edit.h"
 
 namespace footing::learning {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "common/result/result.h"
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/result.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::learning {
 namespace {

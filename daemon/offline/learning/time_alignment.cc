@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "common/text/quantile.h"
+#include "common/base/quantile.h"
 
 namespace footing::learning {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/learning/force_trace.h"
 
 namespace footing::learning {

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "common/body/kinematics.h"
-#include "common/text/lines.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::pose_run {
 namespace {

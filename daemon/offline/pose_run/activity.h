@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/pose_run/pose_run.h"
 
 /// What the person does, frame by frame: scores of a clip that mostly stands say little of squats.

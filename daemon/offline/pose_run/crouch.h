@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/offline/pose_run/pose_run.h"
 
 namespace footing::pose_run {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/body/skeleton_points.h"
-#include "common/virtual/noise/normal_vector.h"
-#include "daemon/simulation/arms/rotation_vector.h"
+#include "common/virtual/devices/normal_vector.h"
+#include "daemon/simulation/pose/rotation_vector.h"
 
 namespace footing::pose_run {
 namespace {

@@ -7,11 +7,11 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/held_device.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/held_device.h"
+#include "common/virtual/devices/scene.h"
 #include "daemon/offline/pose_run/kinect_body.h"
-#include "daemon/simulation/arms/hand_attitude.h"
+#include "daemon/simulation/pose/hand_attitude.h"
 #include "daemon/simulation/reconstruction/inputs.h"
 
 /// What a lab may add to boards and hands (docs/evaluation/pose.md). Their random numbers are their

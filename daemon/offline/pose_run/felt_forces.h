@@ -7,7 +7,7 @@
 
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/scene.h"
 
 namespace footing::pose_run {
 

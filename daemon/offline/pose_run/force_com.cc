@@ -2,8 +2,8 @@
 
 #include <Eigen/QR>
 
-#include "common/result/result.h"
-#include "common/units/units.h"
+#include "common/base/result.h"
+#include "common/base/units.h"
 
 namespace footing::pose_run {
 namespace {

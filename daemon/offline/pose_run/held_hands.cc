@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "daemon/offline/pose_run/stage.h"
-#include "daemon/simulation/arms/arm_tracker.h"
+#include "daemon/simulation/pose/arm_tracker.h"
 
 namespace footing::pose_run {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "common/virtual/sensors/held_device.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/held_device.h"
+#include "common/virtual/devices/scene.h"
 #include "daemon/offline/pose_run/pose_run.h"
-#include "daemon/simulation/arms/arm_model.h"
-#include "daemon/simulation/arms/arm_tracker.h"
+#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/arm_tracker.h"
 
 namespace footing::pose_run {
 

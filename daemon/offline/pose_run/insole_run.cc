@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/insole_cells.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/insole_cells.h"
 #include "daemon/offline/pose_run/stage.h"
 
 namespace footing::pose_run {

@@ -6,7 +6,7 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/virtual/sensors/kinect_skeleton.h"
+#include "common/virtual/devices/kinect_skeleton.h"
 #include "daemon/simulation/reconstruction/hand_track.h"
 #include "daemon/simulation/reconstruction/inputs.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "common/text/number.h"
-#include "common/units/units.h"
-#include "common/virtual/sensors/impact_reaction.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/impact_reaction.h"
 #include "daemon/offline/pose_run/plates_com.h"
 #include "daemon/offline/pose_run/stage.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
 #include "daemon/offline/pose_run/felt_forces.h"

@@ -9,14 +9,14 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/scene.h"
 #include "daemon/offline/pose_run/extra_sensors.h"
 #include "daemon/offline/pose_run/kinect_body.h"
-#include "daemon/simulation/arms/arm_tracker.h"
+#include "daemon/simulation/pose/arm_tracker.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 /// What a recorded motion would have given two boards and two hand trackers, frame by frame, beside

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/scene.h"
 #include "daemon/offline/pose_run/pose_run.h"
 
 namespace footing::pose_run {

@@ -6,7 +6,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/edit.h"
 
 namespace footing::pose_run {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
 #include "daemon/offline/pose_run/pose_run.h"

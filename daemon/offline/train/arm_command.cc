@@ -5,13 +5,13 @@
 
 #include "common/body/kinematics.h"
 #include "common/cli/cli.h"
-#include "daemon/offline/arm_network/training.h"
+#include "daemon/offline/learning/training.h"
 #include "daemon/offline/learning/arm_regression.h"
 #include "daemon/offline/pose_run/held_hands.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
-#include "daemon/simulation/arms/arm_geometry.h"
+#include "daemon/simulation/pose/arm_geometry.h"
 
 namespace footing::train {
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
-#include "common/text/json_text.h"
+#include "common/base/json_text.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"

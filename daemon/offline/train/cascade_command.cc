@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/text/json_text.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/json_text.h"
+#include "common/base/units.h"
 #include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/base/units.h"
 #include "daemon/offline/learning/board_loads.h"
 #include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/train/command.h"

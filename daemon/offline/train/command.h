@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "daemon/offline/ranks/ranks.h"
+#include "daemon/offline/compute/ranks.h"
 
 namespace footing::train {
 

@@ -2,8 +2,8 @@
 #include <string_view>
 
 #include "common/cli/cli.h"
-#include "common/log/log.h"
-#include "daemon/offline/ranks/ranks.h"
+#include "common/runtime/log.h"
+#include "daemon/offline/compute/ranks.h"
 #include "daemon/offline/train/command.h"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "common/cli/cli.h"
 #include "common/recording/output_file.h"
-#include "common/text/json_text.h"
+#include "common/base/json_text.h"
 #include "common/wire/model_file.h"
 
 namespace footing::train {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/model/model.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/train/command.h"
 
 namespace footing::train {

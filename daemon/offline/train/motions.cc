@@ -6,13 +6,13 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
-#include "common/config/data_file.h"
-#include "common/log/log.h"
-#include "common/text/joined.h"
-#include "common/text/number.h"
+#include "common/runtime/data_file.h"
+#include "common/runtime/log.h"
+#include "common/base/joined.h"
+#include "common/base/number.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/standard_layout.h"
-#include "common/virtual/motion_files/load.h"
+#include "common/virtual/options/load.h"
 #include "daemon/offline/learning/alignment.h"
 
 namespace footing::train {

@@ -7,7 +7,7 @@
 
 #include "common/body/body.h"
 #include "common/model/model.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 
 namespace footing::train {

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "common/log/log.h"
-#include "common/units/units.h"
+#include "common/runtime/log.h"
+#include "common/base/units.h"
 #include "daemon/offline/learning/alignment.h"
 #include "daemon/offline/train/recording_reader.h"
 

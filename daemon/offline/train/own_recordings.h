@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/model/model.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/learning/own_take.h"
 #include "daemon/offline/train/motions.h"
 

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "common/cli/cli.h"
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 #include "common/model/model.h"
-#include "common/text/json_text.h"
-#include "daemon/offline/ranks/ranks.h"
+#include "common/base/json_text.h"
+#include "daemon/offline/compute/ranks.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"

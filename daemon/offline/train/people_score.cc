@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
-#include "daemon/offline/eval/scores/pose_metrics.h"
+#include "common/base/units.h"
+#include "daemon/offline/analysis/pose_metrics.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::train {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "common/result/result.h"
-#include "daemon/offline/eval/scores/pose_metrics.h"
+#include "common/base/result.h"
+#include "daemon/offline/analysis/pose_metrics.h"
 #include "daemon/offline/train/pose_training.h"
 #include "daemon/simulation/reconstruction/models.h"
 

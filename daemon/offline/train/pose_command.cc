@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/scene.h"
 #include "daemon/offline/learning/alignment.h"
 
 namespace footing::train {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/model/model.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/learning/basis.h"
 #include "daemon/offline/train/motions.h"
 

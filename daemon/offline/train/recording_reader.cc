@@ -11,11 +11,11 @@
 
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
-#include "common/log/log.h"
-#include "common/mcap/walk.h"
+#include "common/runtime/log.h"
+#include "common/recording/walk.h"
 #include "common/recording/mapped_file.h"
 #include "common/stream/setup.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::train {

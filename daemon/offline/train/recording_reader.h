@@ -3,7 +3,7 @@
 #include <string>
 
 #include "common/model/model.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/learning/recorded_session.h"
 
 namespace footing::train {

@@ -2,8 +2,8 @@
 
 #include <set>
 
-#include "common/text/csv.h"
-#include "common/text/lines.h"
+#include "common/base/csv.h"
+#include "common/base/lines.h"
 
 namespace footing::train {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 #include "daemon/offline/train/table.h"
 
 namespace footing::train {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/model/model.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/learning/examples.h"
 #include "daemon/offline/train/model_output.h"
 

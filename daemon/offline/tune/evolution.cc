@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/tune/search.h"
 
 namespace footing::tune {

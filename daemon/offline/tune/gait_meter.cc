@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
-#include "daemon/offline/legs/leg_gap.h"
+#include "common/base/units.h"
+#include "daemon/offline/analysis/leg_gap.h"
 
 namespace footing::tune {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/offline/tune/search.h"
 
 namespace footing::tune {

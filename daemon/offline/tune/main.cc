@@ -1,5 +1,5 @@
 #include "common/cli/cli.h"
-#include "daemon/offline/ranks/ranks.h"
+#include "daemon/offline/compute/ranks.h"
 #include "daemon/offline/tune/tune_command.h"
 
 int main(int argc, char** argv) {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "common/cli/cli.h"
-#include "daemon/offline/plot/line_plot.h"
+#include "daemon/offline/analysis/line_plot.h"
 
 namespace footing::tune {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <thread>
 
-#include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/engine_files.h"
 
 namespace footing::tune {
 namespace {

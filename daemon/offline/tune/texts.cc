@@ -5,7 +5,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 
 namespace footing::tune {
 

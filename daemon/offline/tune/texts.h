@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/engine/engine.h"
 
 namespace footing::tune {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/text/number.h"
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/tune/gait_meter.h"
 #include "daemon/simulation/biped/limits.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::tune {
 namespace {

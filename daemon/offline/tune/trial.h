@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/engine/state.h"
 

@@ -12,15 +12,15 @@
 #include <thread>
 
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/config/data_file.h"
-#include "common/text/json_text.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/data_file.h"
+#include "common/base/json_text.h"
+#include "common/base/units.h"
 #include "daemon/offline/tune/kept_run.h"
 #include "daemon/offline/tune/report.h"
 #include "daemon/offline/tune/team.h"
 #include "daemon/offline/tune/texts.h"
-#include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/engine_files.h"
 
 namespace footing::tune {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/offline/ranks/ranks.h"
+#include "daemon/offline/compute/ranks.h"
 
 namespace footing::tune {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "common/transport/framed_connection.h"
-#include "common/transport/peer.h"
+#include "common/net/framed_connection.h"
+#include "common/net/peer.h"
 
 namespace footing::devices {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <set>
 
-#include "common/transport/framed_connection.h"
-#include "common/transport/peer.h"
+#include "common/net/framed_connection.h"
+#include "common/net/peer.h"
 #include "daemon/sensor/devices/source.h"
 
 namespace footing::devices {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::devices {
 namespace {

@@ -6,9 +6,9 @@
 #include <thread>
 #include <vector>
 
-#include "common/exchange/bounded_queue.h"
-#include "common/exchange/flag.h"
-#include "common/exchange/heartbeat.h"
+#include "common/runtime/bounded_queue.h"
+#include "common/runtime/flag.h"
+#include "common/runtime/heartbeat.h"
 #include "daemon/sensor/devices/hid_opening.h"
 
 namespace footing::devices {

@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "common/stream/product_ids.h"
 
 namespace footing::devices {

@@ -7,9 +7,9 @@
 #include <string>
 #include <thread>
 
-#include "common/exchange/bounded_queue.h"
-#include "common/exchange/flag.h"
-#include "common/exchange/heartbeat.h"
+#include "common/runtime/bounded_queue.h"
+#include "common/runtime/flag.h"
+#include "common/runtime/heartbeat.h"
 #include "daemon/sensor/devices/hid_opening.h"
 #include "daemon/sensor/devices/hid_reader.h"
 #include "daemon/sensor/devices/node_monitor.h"

@@ -13,8 +13,8 @@
 #include <string>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/exchange/flag.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/flag.h"
 #include "daemon/sensor/devices/hid_reader.h"
 #include "daemon/sensor/devices/hid_search.h"
 

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/timer/timer.h"
-#include "common/transport/framed_connection.h"
-#include "common/transport/listener.h"
-#include "common/transport/turn_queue.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timer.h"
+#include "common/net/framed_connection.h"
+#include "common/net/listener.h"
+#include "common/net/turn_queue.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/devices/attachment.h"
 #include "daemon/sensor/devices/device_connection.h"

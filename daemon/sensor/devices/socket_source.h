@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "common/transport/address.h"
+#include "common/net/address.h"
 #include "daemon/sensor/devices/connection_limits.h"
 #include "daemon/sensor/devices/source.h"
 

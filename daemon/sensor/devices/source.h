@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/contacts.h"
 #include "common/stream/device.h"
 #include "common/stream/hands.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <complex>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::features {
 namespace {

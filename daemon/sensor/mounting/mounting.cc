@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/rotation/rotation.h"
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/rotation.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 
 namespace footing::mounting {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/sensor/service/hub.h"
 #include "footing/v1/command.pb.h"
 

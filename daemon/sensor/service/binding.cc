@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <span>
 
-#include "common/text/lines.h"
-#include "common/text/utf8.h"
+#include "common/base/lines.h"
+#include "common/base/utf8.h"
 
 namespace footing::sensor {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/device.h"
-#include "daemon/sensor/decode/kind_options.h"
+#include "daemon/sensor/kinds/kind_options.h"
 
 namespace footing::sensor {
 

@@ -1,6 +1,6 @@
 #include "daemon/sensor/service/board_chain.h"
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::sensor {
 

@@ -7,8 +7,8 @@
 #include "common/board/plate.h"
 #include "common/stream/sensor.h"
 #include "daemon/sensor/service/recent.h"
-#include "daemon/sensor/tare/displacement.h"
-#include "daemon/sensor/tare/tare.h"
+#include "daemon/sensor/mounting/displacement.h"
+#include "daemon/sensor/mounting/tare.h"
 
 namespace footing::sensor {
 

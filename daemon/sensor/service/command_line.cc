@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/cli/cli.h"
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 #include "daemon/sensor/service/server_options.h"
 
 namespace footing::sensor {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/sensor/service/config.h"
 
 namespace footing::sensor {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "common/lease_control/lease_control.h"
+#include "common/net/lease_control.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/hub.h"
 #include "footing/v1/command.pb.h"

@@ -1,6 +1,6 @@
 #include "daemon/sensor/service/config.h"
 
-#include "common/monitoring/metrics_endpoint.h"
+#include "common/net/metrics_endpoint.h"
 #include "daemon/sensor/service/binding.h"
 
 namespace footing::sensor {

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "common/board/plate.h"
-#include "common/config/config.h"
-#include "common/result/result.h"
-#include "common/transport/access.h"
-#include "common/transport/address.h"
-#include "common/transport/session_limits.h"
-#include "common/units/units.h"
+#include "common/runtime/config.h"
+#include "common/base/result.h"
+#include "common/net/access.h"
+#include "common/net/address.h"
+#include "common/net/session_limits.h"
+#include "common/base/units.h"
 #include "daemon/sensor/devices/connection_limits.h"
 
 namespace footing::sensor {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::sensor {
 

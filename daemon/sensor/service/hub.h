@@ -10,11 +10,11 @@
 #include <tuple>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/sensor/devices/source.h"
 #include "daemon/sensor/features/rig_features.h"
-#include "daemon/sensor/hands/exposure_clock.h"
-#include "daemon/sensor/hands/refusals.h"
+#include "daemon/sensor/mounting/exposure_clock.h"
+#include "daemon/sensor/mounting/refusals.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
 #include "daemon/sensor/service/log_line.h"

@@ -1,7 +1,7 @@
 // Commands to one device, and the leases of motors.
 #include <algorithm>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/sensor/service/hub.h"
 
 namespace footing::sensor {

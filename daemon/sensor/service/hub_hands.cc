@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/sensor/hands/hands.h"
+#include "daemon/sensor/mounting/hands.h"
 #include "daemon/sensor/service/hub.h"
 
 namespace footing::sensor {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 #include "daemon/sensor/service/hub.h"
 
 namespace footing::sensor {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "common/transport/token_bucket.h"
+#include "common/net/token_bucket.h"
 #include "daemon/sensor/service/log_line.h"
 
 namespace footing::sensor {

@@ -1,6 +1,6 @@
 #include "daemon/sensor/service/log_line.h"
 
-#include "common/log/fields.h"
+#include "common/runtime/fields.h"
 
 namespace footing::sensor {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/transport/server.h"
+#include "common/net/server.h"
 
 namespace footing::sensor {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 
 #include "common/stream/sensor.h"
-#include "daemon/sensor/calibration/gyroscope_bias.h"
-#include "daemon/sensor/signal/kalman_filter.h"
+#include "daemon/sensor/reports/gyroscope_bias.h"
+#include "daemon/sensor/features/kalman_filter.h"
 
 namespace footing::sensor {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/transport/server.h"
+#include "common/net/server.h"
 #include "daemon/sensor/service/tick_content.h"
 
 namespace footing::sensor {

@@ -1,6 +1,6 @@
 #include "daemon/sensor/service/reload.h"
 
-#include "common/config/reload.h"
+#include "common/runtime/reload.h"
 
 namespace footing::sensor {
 

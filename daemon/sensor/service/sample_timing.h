@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "daemon/sensor/decode/kind_options.h"
-#include "daemon/sensor/link/device_clock.h"
-#include "daemon/sensor/link/link_statistics.h"
+#include "daemon/sensor/kinds/kind_options.h"
+#include "daemon/sensor/reports/device_clock.h"
+#include "daemon/sensor/reports/link_statistics.h"
 
 namespace footing::sensor {
 

@@ -1,8 +1,8 @@
 #include "daemon/sensor/service/server_options.h"
 
-#include "common/monitoring/monitor.h"
-#include "common/service_manager/service_manager.h"
-#include "common/transport/address.h"
+#include "common/net/monitor.h"
+#include "common/runtime/service_manager.h"
+#include "common/net/address.h"
 #include "daemon/sensor/service/publish.h"
 
 namespace footing::sensor {

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "common/result/result.h"
-#include "common/transport/access.h"
-#include "common/transport/server.h"
+#include "common/base/result.h"
+#include "common/net/access.h"
+#include "common/net/server.h"
 #include "daemon/sensor/service/config.h"
 
 namespace footing::sensor {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/sensor/service/config.h"
 
 namespace footing::sensor {

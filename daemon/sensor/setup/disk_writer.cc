@@ -4,7 +4,7 @@
 #include <boost/asio/post.hpp>
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::setup {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/sensor/setup/stored_setup.h"
 
 /// The stored set-up as JSON text, each part a file of its own. A part is read as a whole or not at

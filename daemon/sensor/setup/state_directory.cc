@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "common/config/data_file.h"
-#include "common/config/write_file.h"
+#include "common/runtime/data_file.h"
+#include "common/runtime/write_file.h"
 
 namespace footing::setup {
 namespace {

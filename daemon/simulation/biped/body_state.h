@@ -3,7 +3,7 @@
 #include <array>
 
 #include "daemon/simulation/biped/parameters.h"
-#include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/biped/world.h"
 
 namespace footing::biped {
 

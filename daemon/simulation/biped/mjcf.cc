@@ -3,8 +3,8 @@
 #include <array>
 #include <charconv>
 
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 #include "daemon/simulation/biped/body_state.h"
 
 namespace footing::biped {

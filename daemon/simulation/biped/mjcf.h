@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "daemon/simulation/biped/parameters.h"
-#include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/biped/world.h"
 
 namespace footing::biped {
 

@@ -1,5 +1,5 @@
 #include "daemon/simulation/biped/parameters.h"
-#include "common/text/json_text.h"
+#include "common/base/json_text.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 /// The biped of Shiratori & Hodgins 2008, Figure 4: a body, two hips of three hinges, two
 /// telescoping knees; fourteen degrees of freedom.

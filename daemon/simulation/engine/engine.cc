@@ -5,7 +5,7 @@
 #include "daemon/simulation/biped/skeleton.h"
 #include "daemon/simulation/engine/parts.h"
 #include "daemon/simulation/gait/controller.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::engine {
 

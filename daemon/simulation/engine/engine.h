@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/command.h"
 #include "daemon/simulation/gait/gain_table.h"
 #include "daemon/simulation/mapping/any_interface.h"
-#include "daemon/simulation/terrain/append.h"
+#include "daemon/simulation/biped/append.h"
 
 /// The gait engine: received features in, a walking biped out, one fixed step at a time.
 namespace footing::engine {

@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "daemon/simulation/engine/parts.h"
-#include "daemon/simulation/terrain/append.h"
-#include "daemon/simulation/terrain/endless.h"
+#include "daemon/simulation/biped/append.h"
+#include "daemon/simulation/biped/endless.h"
 
 namespace footing::engine {
 void GaitEngine::Parts::TakeAppend(const EngineInputs& inputs) {

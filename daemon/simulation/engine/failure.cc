@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/simulation/terrain/ground.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::engine {
 namespace {

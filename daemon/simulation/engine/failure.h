@@ -3,8 +3,8 @@
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/engine/engine.h"
-#include "daemon/simulation/physics/world.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/world.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::engine {
 

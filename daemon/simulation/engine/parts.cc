@@ -5,8 +5,8 @@
 
 #include "daemon/simulation/biped/limits.h"
 #include "daemon/simulation/gait/controller.h"
-#include "daemon/simulation/terrain/endless.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/endless.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::engine {
 namespace {

@@ -4,8 +4,8 @@
 #include "daemon/simulation/engine/state.h"
 #include "daemon/simulation/engine/track_world.h"
 #include "daemon/simulation/gait/gain_table.h"
-#include "daemon/simulation/terrain/ground.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::engine {
 

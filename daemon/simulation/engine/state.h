@@ -3,8 +3,8 @@
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/gait/memory.h"
 #include "daemon/simulation/mapping/any_interface.h"
-#include "daemon/simulation/physics/world.h"
-#include "daemon/simulation/trial/trial.h"
+#include "daemon/simulation/biped/world.h"
+#include "daemon/simulation/biped/trial.h"
 
 namespace footing::engine {
 

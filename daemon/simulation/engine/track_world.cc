@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "daemon/simulation/biped/mjcf.h"
-#include "daemon/simulation/terrain/append.h"
-#include "daemon/simulation/terrain/ground.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/append.h"
+#include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::engine {
 

@@ -3,11 +3,11 @@
 #include <memory>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/parameters.h"
-#include "daemon/simulation/physics/world.h"
-#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/biped/world.h"
+#include "daemon/simulation/biped/ground.h"
 
 namespace footing::engine {
 

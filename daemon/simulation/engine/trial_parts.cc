@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/engine/failure.h"
 #include "daemon/simulation/engine/parts.h"
 

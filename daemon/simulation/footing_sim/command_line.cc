@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "common/cli/cli.h"
-#include "common/log/log.h"
+#include "common/runtime/log.h"
 #include "daemon/simulation/footing_sim/service.h"
 
 namespace footing::footing_sim {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/footing_sim/config.h"
 
 namespace footing::footing_sim {

@@ -1,7 +1,7 @@
 #include "daemon/simulation/footing_sim/config.h"
 
-#include "common/monitoring/metrics_endpoint.h"
-#include "common/transport/address_or_default.h"
+#include "common/net/metrics_endpoint.h"
+#include "common/net/address_or_default.h"
 
 namespace footing::footing_sim {
 

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/log/log.h"
-#include "common/service_manager/service_manager.h"
-#include "common/service_manager/service_signals.h"
-#include "common/timer/timer.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/service_signals.h"
+#include "common/runtime/timer.h"
 #include "daemon/simulation/footing_sim/command_line.h"
 #include "daemon/simulation/footing_sim/reload.h"
 #include "daemon/simulation/footing_sim/service.h"

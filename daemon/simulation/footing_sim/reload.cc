@@ -1,6 +1,6 @@
 #include "daemon/simulation/footing_sim/reload.h"
 
-#include "common/config/reload.h"
+#include "common/runtime/reload.h"
 
 namespace footing::footing_sim {
 

@@ -3,7 +3,7 @@
 #include <boost/asio/io_context.hpp>
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/footing_sim/config.h"
 #include "daemon/simulation/serving/serving.h"
 

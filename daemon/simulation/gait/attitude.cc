@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/context.h"
 #include "daemon/simulation/gait/frames.h"
 

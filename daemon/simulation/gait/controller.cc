@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/anticipation.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/leg_room.h"

@@ -2,7 +2,7 @@
 
 #include "common/stream/character.h"
 #include "daemon/simulation/gait/context.h"
-#include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/biped/world.h"
 
 /// The four gaits of section 5 as state machines over a floating body: command and body state in,
 /// joint efforts out.

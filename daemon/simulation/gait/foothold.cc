@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/leg_room.h"
 #include "daemon/simulation/gait/pit_sight.h"
 #include "daemon/simulation/gait/transition.h"
 #include "daemon/simulation/gait/walk_sight.h"
-#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/biped/ground.h"
 
 namespace footing::gait {
 namespace {

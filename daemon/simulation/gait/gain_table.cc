@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/text/csv.h"
-#include "common/text/lines.h"
-#include "common/text/number.h"
+#include "common/base/csv.h"
+#include "common/base/lines.h"
+#include "common/base/number.h"
 #include "daemon/simulation/gait/phase.h"
 
 namespace footing::gait {

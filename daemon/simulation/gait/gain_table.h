@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/gait/gain_fields.h"
 

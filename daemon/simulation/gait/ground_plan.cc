@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/transition.h"
-#include "daemon/simulation/terrain/ground.h"
-#include "daemon/simulation/terrain/spot.h"
+#include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/spot.h"
 
 namespace footing::gait {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::gait {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/ground_plan.h"

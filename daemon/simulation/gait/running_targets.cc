@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"

@@ -4,7 +4,7 @@
 #include "daemon/simulation/gait/gains.h"
 #include "daemon/simulation/gait/memory.h"
 #include "daemon/simulation/gait/targets.h"
-#include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/biped/world.h"
 
 namespace footing::gait {
 

@@ -3,7 +3,7 @@
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/gait/gains.h"
 #include "daemon/simulation/gait/targets.h"
-#include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/biped/world.h"
 
 namespace footing::gait {
 

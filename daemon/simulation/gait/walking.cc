@@ -8,7 +8,7 @@
 #include "daemon/simulation/gait/pit_sight.h"
 #include "daemon/simulation/gait/touchdown.h"
 #include "daemon/simulation/gait/transition.h"
-#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/biped/ground.h"
 
 namespace footing::gait {
 namespace {

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/anticipation.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/walking.h"
-#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/biped/ground.h"
 
 namespace footing::gait {
 namespace {

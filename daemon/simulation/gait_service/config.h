@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/config/config.h"
+#include "common/runtime/config.h"
 #include "daemon/simulation/mapping/any_interface.h"
 
 namespace footing::gait_service {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/trial.h"
 #include "daemon/simulation/engine/engine.h"
 #include "footing/v1/character.pb.h"

@@ -3,16 +3,16 @@
 #include <cmath>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/config/data_file.h"
-#include "common/log/log.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/data_file.h"
+#include "common/runtime/log.h"
 #include "common/wire/wire.h"
-#include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/engine_files.h"
 #include "daemon/simulation/gait_service/applied_input.h"
 #include "daemon/simulation/gait_service/publish.h"
 #include "daemon/simulation/serving/channel_bytes.h"
 #include "daemon/simulation/serving/messages.h"
-#include "daemon/simulation/terrain/append.h"
+#include "daemon/simulation/biped/append.h"
 
 namespace footing::gait_service {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "common/lease_control/lease_control.h"
-#include "common/result/result.h"
+#include "common/net/lease_control.h"
+#include "common/base/result.h"
 #include "common/stream/character.h"
-#include "common/transport/server.h"
+#include "common/net/server.h"
 #include "daemon/simulation/gait_service/config.h"
 #include "daemon/simulation/gait_service/effective_config.h"
 #include "daemon/simulation/gait_service/gait_run.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 namespace footing::gait_service {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/exchange/latest.h"
+#include "common/runtime/latest.h"
 #include "daemon/simulation/gait_service/frame.h"
 #include "daemon/simulation/gait_service/track_exchange.h"
 

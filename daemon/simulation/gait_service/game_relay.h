@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/stream/game.h"
-#include "common/transport/server.h"
+#include "common/net/server.h"
 #include "footing/v1/command.pb.h"
 
 namespace footing::gait_service {

@@ -5,7 +5,7 @@
 
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::gait_service {

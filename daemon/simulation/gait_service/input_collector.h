@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/setup.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/mapping/any_interface.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/exchange/latest.h"
+#include "common/runtime/latest.h"
 #include "daemon/simulation/gait_service/frame.h"
 #include "daemon/simulation/gait_service/input_collector.h"
 #include "daemon/simulation/gait_service/responses.h"

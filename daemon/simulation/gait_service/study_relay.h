@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "common/stream/study.h"
-#include "common/transport/server.h"
+#include "common/net/server.h"
 #include "footing/v1/command.pb.h"
 
 namespace footing::gait_service {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "common/exchange/bounded_queue.h"
+#include "common/runtime/bounded_queue.h"
 #include "daemon/simulation/engine/track_world.h"
 
 namespace footing::gait_service {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/parameters.h"
 #include "daemon/simulation/gait_service/failure_record.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::mapping {
 namespace {

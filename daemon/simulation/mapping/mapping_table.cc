@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/text/json_text.h"
-#include "common/units/units.h"
+#include "common/base/json_text.h"
+#include "common/base/units.h"
 
 namespace footing::mapping {
 namespace {

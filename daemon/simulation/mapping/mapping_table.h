@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 /// The files NAME_mapping.json: from a person's comfortable range to the character's stable one
 /// (gait paper, section 7).

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::momentum {
 namespace {

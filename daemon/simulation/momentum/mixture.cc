@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::momentum {
 

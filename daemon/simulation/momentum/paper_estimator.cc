@@ -1,6 +1,6 @@
 #include "daemon/simulation/momentum/paper_estimator.h"
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::momentum {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/momentum/vertical_com.h"
 
 // What a filter learns of the weight from a body that keeps its T-pose, or stands still.

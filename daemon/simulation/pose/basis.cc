@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::pose {
 namespace {

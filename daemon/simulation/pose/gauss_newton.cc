@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::pose {
 namespace {

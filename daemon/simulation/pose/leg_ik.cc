@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 
 namespace footing::pose {
 namespace {

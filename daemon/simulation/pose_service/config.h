@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/config/config.h"
+#include "common/runtime/config.h"
 
 namespace footing::pose_service {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "daemon/simulation/arms/arm_tracker.h"
+#include "daemon/simulation/pose/arm_tracker.h"
 #include "daemon/simulation/pose_service/pose_frame.h"
 #include "footing/v1/sensor.pb.h"
 

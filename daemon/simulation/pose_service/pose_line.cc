@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "daemon/simulation/pose_service/pose_applied.h"
 #include "daemon/simulation/pose_service/pose_models.h"
 #include "daemon/simulation/pose_service/pose_publish.h"

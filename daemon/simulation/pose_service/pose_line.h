@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/body/body.h"
-#include "common/lease_control/lease_control.h"
-#include "common/result/result.h"
-#include "common/transport/server.h"
+#include "common/net/lease_control.h"
+#include "common/base/result.h"
+#include "common/net/server.h"
 #include "daemon/simulation/pose_service/config.h"
 #include "daemon/simulation/pose_service/pose_events.h"
 #include "daemon/simulation/pose_service/pose_run.h"

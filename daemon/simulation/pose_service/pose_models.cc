@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 #include "common/wire/model_file.h"
 
 namespace footing::pose_service {

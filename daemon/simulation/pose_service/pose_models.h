@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/reconstruction/models.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 

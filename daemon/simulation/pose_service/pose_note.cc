@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "common/text/number.h"
-#include "common/units/units.h"
+#include "common/base/number.h"
+#include "common/base/units.h"
 #include "daemon/simulation/momentum/calibration.h"
 
 namespace footing::pose_service {

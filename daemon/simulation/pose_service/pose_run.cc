@@ -4,8 +4,8 @@
 #include <cstring>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/text/fnv.h"
+#include "common/runtime/clock.h"
+#include "common/base/fnv.h"
 
 namespace footing::pose_service {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "common/exchange/bounded_queue.h"
-#include "common/exchange/latest.h"
+#include "common/runtime/bounded_queue.h"
+#include "common/runtime/latest.h"
 #include "daemon/simulation/pose_service/pose_frame.h"
 #include "daemon/simulation/pose_service/t_pose_check.h"
 

@@ -8,8 +8,8 @@
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
 #include "common/body/skeleton_points.h"
-#include "common/text/joined.h"
-#include "common/units/units.h"
+#include "common/base/joined.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::pose_service {

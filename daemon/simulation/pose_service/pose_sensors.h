@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "common/exchange/latest.h"
+#include "common/runtime/latest.h"
 #include "daemon/simulation/pose_service/pose_arms.h"
 #include "daemon/simulation/pose_service/pose_frame.h"
 #include "daemon/simulation/pose_service/tracked_hand.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/body/body.h"
-#include "common/result/result.h"
-#include "common/subject/subject.h"
+#include "common/base/result.h"
+#include "common/runtime/subject.h"
 
 namespace footing::pose_service {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/body/held_frame.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::pose_service {

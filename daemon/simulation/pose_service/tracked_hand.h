@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "daemon/simulation/inertial/track.h"
+#include "daemon/simulation/pose/track.h"
 #include "daemon/simulation/reconstruction/hand_track.h"
 #include "footing/v1/sensor.pb.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/reconstruction/pose_targets.h"
 
 namespace footing::reconstruction {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "common/stream/hands.h"
-#include "daemon/simulation/arms/arm_model.h"
-#include "daemon/simulation/arms/hand_attitude.h"
+#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/hand_attitude.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 
 namespace footing::reconstruction {

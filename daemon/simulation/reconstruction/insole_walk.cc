@@ -6,7 +6,7 @@
 
 #include "common/body/momentum.h"
 #include "common/body/points.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/reconstruction/measurement.h"
 
 namespace footing::reconstruction {

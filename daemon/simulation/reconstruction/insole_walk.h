@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "common/body/body.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/foot_contact.h"
 #include "daemon/simulation/reconstruction/inputs.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/model/model.h"
-#include "common/result/result.h"
-#include "daemon/simulation/arms/arm_model.h"
+#include "common/base/result.h"
+#include "daemon/simulation/pose/arm_model.h"
 #include "daemon/simulation/cascade/network.h"
 #include "daemon/simulation/pose/basis.h"
 #include "daemon/simulation/reconstruction/features.h"

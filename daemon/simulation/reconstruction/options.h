@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/reconstruction/feet.h"
 

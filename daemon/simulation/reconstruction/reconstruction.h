@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "common/body/body.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/reconstruction/best_mode.h"
 #include "daemon/simulation/reconstruction/inputs.h"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/transport/server.h"
+#include "common/net/server.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/session.pb.h"
 

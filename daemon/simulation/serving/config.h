@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "common/config/config.h"
-#include "common/transport/access.h"
-#include "common/transport/session_limits.h"
+#include "common/runtime/config.h"
+#include "common/net/access.h"
+#include "common/net/session_limits.h"
 
 namespace footing::serving {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/config/config.h"
+#include "common/runtime/config.h"
 #include "daemon/simulation/serving/config.h"
 
 namespace footing::serving {

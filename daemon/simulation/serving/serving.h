@@ -13,18 +13,18 @@
 #include <utility>
 #include <vector>
 
-#include "common/clock/clock.h"
-#include "common/discovery/advertiser.h"
-#include "common/log/fields.h"
-#include "common/log/log.h"
-#include "common/monitoring/monitor.h"
-#include "common/result/result.h"
-#include "common/service_manager/service_manager.h"
-#include "common/timer/timer.h"
-#include "common/transport/access.h"
-#include "common/transport/address_or_default.h"
-#include "common/transport/client.h"
-#include "common/transport/server.h"
+#include "common/runtime/clock.h"
+#include "common/net/advertiser.h"
+#include "common/runtime/fields.h"
+#include "common/runtime/log.h"
+#include "common/net/monitor.h"
+#include "common/base/result.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
+#include "common/net/access.h"
+#include "common/net/address_or_default.h"
+#include "common/net/client.h"
+#include "common/net/server.h"
 #include "daemon/simulation/serving/config.h"
 
 namespace footing::serving {

@@ -7,11 +7,11 @@
 #include <thread>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/exchange/bounded_queue.h"
-#include "common/exchange/flag.h"
-#include "common/exchange/heartbeat.h"
-#include "common/exchange/latest.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/bounded_queue.h"
+#include "common/runtime/flag.h"
+#include "common/runtime/heartbeat.h"
+#include "common/runtime/latest.h"
 
 namespace footing::serving {
 

@@ -4,9 +4,9 @@
 
 #include <Eigen/Dense>
 
-#include "common/sphere/find.h"
+#include "common/camera/find.h"
 #include "common/virtual/camera/render.h"
-#include "daemon/sensor/hands/hands.h"
+#include "daemon/sensor/mounting/hands.h"
 
 namespace footing::camera {
 namespace {

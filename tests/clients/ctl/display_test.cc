@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "clients/ctl/display/device_table.h"
-#include "clients/ctl/display/format.h"
-#include "clients/ctl/display/live_screen.h"
-#include "clients/ctl/display/server_table.h"
+#include "clients/ctl/report/device_table.h"
+#include "clients/ctl/report/format.h"
+#include "clients/ctl/report/live_screen.h"
+#include "clients/ctl/report/server_table.h"
 
 namespace footing::ctl::display {
 namespace {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "clients/ctl/doctor/doctor.h"
+#include "clients/ctl/report/doctor.h"
 
 /// A healthy host, and every fault that the doctor finds.
 namespace footing::ctl::doctor {

@@ -1,4 +1,4 @@
-#include "clients/ctl/doctor/doctor.h"
+#include "clients/ctl/report/doctor.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "common/virtual/devices/link_model.h"
-#include "daemon/sensor/link/link_statistics.h"
+#include "daemon/sensor/reports/link_statistics.h"
 #include "tests/clients/ctl/doctor_faults.h"
 
 namespace footing::ctl::doctor {

@@ -1,4 +1,4 @@
-#include "clients/ctl/display/find_device.h"
+#include "clients/ctl/report/find_device.h"
 
 #include <gmock/gmock.h>
 

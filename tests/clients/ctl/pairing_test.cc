@@ -1,4 +1,4 @@
-#include "clients/ctl/pairing/pairing.h"
+#include "clients/ctl/report/pairing.h"
 
 #include <gmock/gmock.h>
 

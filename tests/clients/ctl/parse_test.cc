@@ -1,4 +1,4 @@
-#include "clients/ctl/doctor/parse.h"
+#include "clients/ctl/report/parse.h"
 
 #include <gmock/gmock.h>
 

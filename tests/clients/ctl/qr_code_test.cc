@@ -1,4 +1,4 @@
-#include "clients/ctl/display/qr_code.h"
+#include "clients/ctl/report/qr_code.h"
 
 #include <gtest/gtest.h>
 

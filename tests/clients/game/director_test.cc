@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/track/centre_line.h"
+#include "common/body/centre_line.h"
 #include "tests/clients/game/short_track.h"
 
 namespace footing::game {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "common/units/units.h"
-#include "daemon/simulation/terrain/append.h"
+#include "common/base/units.h"
+#include "daemon/simulation/biped/append.h"
 #include "tests/clients/game/short_track.h"
 
 namespace footing::game {

@@ -15,7 +15,7 @@
 #include "common/body/angle_deviation.h"
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/table.h"
 #include "common/wire/wire.h"
 #include "footing/v1/session.pb.h"

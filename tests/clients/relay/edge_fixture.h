@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "clients/relay/service/edge.h"
-#include "clients/relay/service/subjects.h"
-#include "common/clock/clock.h"
-#include "common/timer/timer.h"
-#include "common/transport/client.h"
+#include "clients/relay/edge.h"
+#include "clients/relay/subjects.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timer.h"
+#include "common/net/client.h"
 #include "tests/clients/relay/nats_server.h"
 #include "tests/common/timer/simulated_time.h"
 #include "tests/common/transport/io_fixture.h"

@@ -1,4 +1,4 @@
-#include "clients/relay/service/edge.h"
+#include "clients/relay/edge.h"
 
 #include <cstdint>
 #include <limits>

@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "clients/relay/links/broker_address.h"
-#include "clients/relay/links/login_file.h"
+#include "clients/relay/broker_address.h"
+#include "clients/relay/login_file.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::relay {

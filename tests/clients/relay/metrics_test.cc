@@ -1,4 +1,4 @@
-#include "clients/relay/service/metrics.h"
+#include "clients/relay/metrics.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "clients/relay/links/nats_link.h"
+#include "clients/relay/nats_link.h"
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "common/transport/address.h"
+#include "common/net/address.h"
 
 namespace footing::relay {
 

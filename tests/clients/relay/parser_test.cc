@@ -1,4 +1,4 @@
-#include "clients/relay/nats/parser.h"
+#include "clients/relay/parser.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/relay/nats/requests.h"
+#include "clients/relay/requests.h"
 
 namespace footing::relay::nats {
 namespace {

@@ -1,13 +1,13 @@
-#include "clients/relay/service/thinner.h"
+#include "clients/relay/thinner.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <map>
 
-#include "clients/relay/service/channels.h"
-#include "clients/relay/service/subjects.h"
-#include "common/transport/channels_of.h"
+#include "clients/relay/channels.h"
+#include "clients/relay/subjects.h"
+#include "common/net/channels_of.h"
 
 namespace footing::relay {
 namespace {

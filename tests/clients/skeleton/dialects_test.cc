@@ -1,11 +1,11 @@
-#include "clients/skeleton/dialects/dialects.h"
+#include "clients/skeleton/tracking/dialects.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
-#include "clients/skeleton/dialects/decoder.h"
+#include "clients/skeleton/tracking/decoder.h"
 #include "tests/clients/skeleton/clips.h"
 #include "tests/clients/skeleton/send.h"
 

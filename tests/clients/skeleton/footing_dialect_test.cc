@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "clients/skeleton/dialects/decoder.h"
-#include "clients/skeleton/osc/osc.h"
+#include "clients/skeleton/tracking/decoder.h"
+#include "clients/skeleton/tracking/osc.h"
 
 namespace footing::skeleton {
 namespace {

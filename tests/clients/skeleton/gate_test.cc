@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "clients/skeleton/dialects/dialects.h"
-#include "clients/skeleton/gates/person_gate.h"
+#include "clients/skeleton/tracking/dialects.h"
+#include "clients/skeleton/tracking/person_gate.h"
 #include "tests/clients/skeleton/clips.h"
 
 namespace footing::skeleton {

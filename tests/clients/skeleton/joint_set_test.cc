@@ -1,4 +1,4 @@
-#include "clients/skeleton/joints/joint_set.h"
+#include "clients/skeleton/tracking/joint_set.h"
 
 #include <gtest/gtest.h>
 

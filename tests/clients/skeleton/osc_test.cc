@@ -1,4 +1,4 @@
-#include "clients/skeleton/osc/osc.h"
+#include "clients/skeleton/tracking/osc.h"
 
 #include <gtest/gtest.h>
 

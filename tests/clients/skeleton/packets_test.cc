@@ -2,10 +2,10 @@
 
 #include <cstdlib>
 
-#include "clients/skeleton/dialects/decoder.h"
-#include "clients/skeleton/dialects/dialects.h"
-#include "clients/skeleton/gates/person_gate.h"
-#include "common/virtual/noise/random.h"
+#include "clients/skeleton/tracking/decoder.h"
+#include "clients/skeleton/tracking/dialects.h"
+#include "clients/skeleton/tracking/person_gate.h"
+#include "common/virtual/devices/random.h"
 #include "tests/clients/skeleton/clips.h"
 
 namespace footing::skeleton {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/clients/skeleton/clips.h"
 
 namespace footing::skeleton {

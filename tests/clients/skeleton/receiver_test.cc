@@ -1,4 +1,4 @@
-#include "clients/skeleton/service/receiver.h"
+#include "clients/skeleton/receiver.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <fstream>
 #include <thread>
 
-#include "clients/skeleton/service/sender.h"
-#include "clients/skeleton/service/udp.h"
+#include "clients/skeleton/sender.h"
+#include "clients/skeleton/udp.h"
 #include "tests/clients/skeleton/clips.h"
 
 namespace footing::skeleton {

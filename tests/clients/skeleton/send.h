@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/skeleton/dialects/decoder.h"
+#include "clients/skeleton/tracking/decoder.h"
 
 namespace footing::skeleton {
 

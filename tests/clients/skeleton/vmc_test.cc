@@ -1,4 +1,4 @@
-#include "clients/skeleton/dialects/vmc.h"
+#include "clients/skeleton/tracking/vmc.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/skeleton/dialects/decoder.h"
+#include "clients/skeleton/tracking/decoder.h"
 #include "tests/clients/skeleton/send.h"
 
 namespace footing::skeleton {

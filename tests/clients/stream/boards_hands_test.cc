@@ -14,7 +14,7 @@
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
 #include "common/frames/netpbm.h"
-#include "common/sphere/find.h"
+#include "common/camera/find.h"
 #include "tests/clients/stream/boards_fixture.h"
 #include "tests/clients/stream/made_stage.h"
 

@@ -11,7 +11,7 @@
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
 #include "common/body/points.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/clients/stream/boards_fixture.h"
 #include "tests/clients/stream/made_stage.h"
 

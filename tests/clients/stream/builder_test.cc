@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::stream_client {
 namespace {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <memory>
 
-#include "common/units/units.h"
-#include "common/virtual/sensors/insole_cells.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/insole_cells.h"
 #include "tests/clients/stream/made_stage.h"
 #include "tests/common/temporary_folder.h"
 

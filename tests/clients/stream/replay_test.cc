@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "common/recording/recorded_session.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/clients/stream/virtual_line.h"
 #include "tests/common/made_recording.h"
 #include "tests/common/temporary_folder.h"

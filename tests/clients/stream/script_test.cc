@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::stream_client {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clients/stream/replay.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/sensor/service/hub.h"
 #include "daemon/sensor/service/publish.h"
 

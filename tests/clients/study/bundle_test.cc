@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/study/bundle/anonymous.h"
-#include "clients/study/bundle/study_tables.h"
+#include "clients/study/anonymous.h"
+#include "clients/study/study_tables.h"
 
 namespace footing::study::bundle {
 namespace {

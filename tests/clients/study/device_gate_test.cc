@@ -1,4 +1,4 @@
-#include "clients/study/gate/device_gate.h"
+#include "clients/study/plan/device_gate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

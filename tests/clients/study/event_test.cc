@@ -1,4 +1,4 @@
-#include "clients/study/records/event.h"
+#include "clients/study/report/event.h"
 
 #include <string>
 

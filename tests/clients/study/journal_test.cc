@@ -1,4 +1,4 @@
-#include "clients/study/journal/journal.h"
+#include "clients/study/session/journal.h"
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/study/journal/lock.h"
-#include "clients/study/journal/study_folder.h"
+#include "clients/study/session/lock.h"
+#include "clients/study/session/study_folder.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::study::journal {

@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/study/journal/journal.h"
-#include "clients/study/journal/study_folder.h"
-#include "clients/study/simulate/child.h"
-#include "common/clock/clock.h"
-#include "common/clock/timekeeper.h"
-#include "common/units/units.h"
+#include "clients/study/session/journal.h"
+#include "clients/study/session/study_folder.h"
+#include "clients/study/child.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timekeeper.h"
+#include "common/base/units.h"
 
 namespace footing::study {
 namespace {

@@ -1,10 +1,10 @@
-#include "clients/study/records/progress.h"
+#include "clients/study/report/progress.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "clients/study/records/trials.h"
+#include "clients/study/report/trials.h"
 
 namespace footing::study::records {
 namespace {

@@ -1,4 +1,4 @@
-#include "clients/study/simulate/progress_text.h"
+#include "clients/study/progress_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/virtual/users/range_acts.h"
-#include "common/virtual/users/style.h"
+#include "common/virtual/people/range_acts.h"
+#include "common/virtual/people/style.h"
 
 namespace footing::study::ranges {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/ranges/meter.h"
-#include "common/config/data_file.h"
-#include "common/units/units.h"
-#include "common/virtual/users/person.h"
-#include "daemon/offline/eval/chain/features_chain.h"
+#include "clients/study/plan/meter.h"
+#include "common/runtime/data_file.h"
+#include "common/base/units.h"
+#include "common/virtual/people/person.h"
+#include "daemon/offline/analysis/features_chain.h"
 #include "daemon/simulation/mapping/any_interface.h"
 #include "tests/clients/study/range_acts.h"
 
@@ -69,7 +69,7 @@ Result<nlohmann::ordered_json> Table(const Played& played, const Meter& meter) {
                  BuiltIn(played.interface));
 }
 
-/// The synthetic users' slowest and fastest motion at tempo 1 (common/virtual/users/limb_body.cc).
+/// The synthetic users' slowest and fastest motion at tempo 1 (common/virtual/people/limb_body.cc).
 struct True {
   UserInterface interface;
   double slow_hz, fast_hz;

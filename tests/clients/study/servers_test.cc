@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "common/clock/clock.h"
-#include "common/lease_control/lease_control.h"
-#include "common/timer/timer.h"
-#include "common/transport/channels_of.h"
-#include "common/transport/server.h"
+#include "common/runtime/clock.h"
+#include "common/net/lease_control.h"
+#include "common/runtime/timer.h"
+#include "common/net/channels_of.h"
+#include "common/net/server.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::study {

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/study/screen/screen_message.h"
+#include "clients/study/plan/screen_message.h"
 #include "clients/study/session/active_time.h"
 #include "clients/study/session/anticipation.h"
 #include "clients/study/session/console.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
-#include "clients/study/records/trials.h"
+#include "clients/study/report/trials.h"
 #include "clients/study/report/analysis.h"
 
 /// The records of a small study.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "clients/view/scene/show.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::scene {
 namespace {

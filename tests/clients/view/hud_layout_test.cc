@@ -1,4 +1,4 @@
-#include "clients/view/render/hud/hud_layout.h"
+#include "clients/view/render/hud_layout.h"
 
 #include <gtest/gtest.h>
 

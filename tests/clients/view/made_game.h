@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/stream/game.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::scene::made {
 

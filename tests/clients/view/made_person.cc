@@ -7,7 +7,7 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene::made {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/recording/recording_writer.h"
-#include "common/units/time.h"
+#include "common/base/time.h"
 #include "common/wire/wire.h"
 #include "tests/clients/view/made_stream.h"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/rotation/rotation.h"
-#include "common/units/units.h"
+#include "common/base/rotation.h"
+#include "common/base/units.h"
 
 namespace footing::scene::made {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "clients/view/scene/show.h"
 #include "clients/view/scene/words.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/recording/recording_writer.h"
-#include "common/units/time.h"
+#include "common/base/time.h"
 #include "common/wire/wire.h"
 #include "tests/common/temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clients/view/scene/digits.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene {

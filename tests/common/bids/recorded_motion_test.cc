@@ -1,4 +1,4 @@
-#include "common/bids/recorded_motion.h"
+#include "common/recording/recorded_motion.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "common/bids/tables.h"
+#include "common/recording/tables.h"
 
 #include <gmock/gmock.h>
 

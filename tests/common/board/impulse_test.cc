@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::board {
 namespace {

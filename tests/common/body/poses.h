@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "common/body/body.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::body::test {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/common/body/poses.h"
 
 namespace footing::body {

@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "common/board/layout.h"
-#include "common/camera_pose/marks.h"
-#include "common/camera_pose/observations.h"
-#include "common/virtual/noise/random.h"
+#include "common/camera/marks.h"
+#include "common/camera/observations.h"
+#include "common/virtual/devices/random.h"
 
 /// A camera in front of two boards, and what it sees of a sphere on them.
 namespace footing::camera_pose {

@@ -1,4 +1,4 @@
-#include "common/camera_pose/camera_pose.h"
+#include "common/camera/camera_pose.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "common/camera_pose/samples.h"
+#include "common/camera/samples.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "common/camera_pose/three_poses.h"
+#include "common/camera/three_poses.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

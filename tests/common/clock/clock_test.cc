@@ -1,4 +1,4 @@
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/clock/timekeeper.h"
+#include "common/runtime/timekeeper.h"
 
 namespace footing::clock {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/config/config.h"
+#include "common/runtime/config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "common/config/data_file.h"
-#include "common/config/lines_of_keys.h"
+#include "common/runtime/data_file.h"
+#include "common/runtime/lines_of_keys.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::config {

@@ -1,4 +1,4 @@
-#include "common/config/write_file.h"
+#include "common/runtime/write_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::config {

@@ -1,4 +1,4 @@
-#include "common/device_link/device_link.h"
+#include "common/net/device_link.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/framed_connection.h"
-#include "common/transport/listener.h"
+#include "common/net/framed_connection.h"
+#include "common/net/listener.h"
 #include "tests/common/transport/io_fixture.h"
 
 namespace footing::device_link {

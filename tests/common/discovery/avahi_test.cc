@@ -1,12 +1,12 @@
-#include "common/discovery/avahi.h"
+#include "common/net/avahi.h"
 
 #include <gtest/gtest.h>
 
 #include <boost/asio/io_context.hpp>
 #include <cstdlib>
 
-#include "common/discovery/advertiser.h"
-#include "common/discovery/browser.h"
+#include "common/net/advertiser.h"
+#include "common/net/browser.h"
 
 namespace footing::discovery {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <thread>
 
-#include "common/exchange/bounded_queue.h"
-#include "common/exchange/latest.h"
+#include "common/runtime/bounded_queue.h"
+#include "common/runtime/latest.h"
 
 namespace footing::exchange {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/board/layout.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "common/board/layout.h"
-#include "common/camera_pose/samples.h"
+#include "common/camera/samples.h"
 #include "common/guide/set_up.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/common/camera_pose/boards.h"
 
 namespace footing::guide {

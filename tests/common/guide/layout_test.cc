@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/board/layout.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/guide/set_up.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::guide {
 

@@ -1,4 +1,4 @@
-#include "common/lease/lease.h"
+#include "common/net/lease.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

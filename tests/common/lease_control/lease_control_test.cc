@@ -1,4 +1,4 @@
-#include "common/lease_control/lease_control.h"
+#include "common/net/lease_control.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "common/lens_calibration/dot_grid.h"
-#include "common/lens_calibration/fit_lens.h"
+#include "common/camera/dot_grid.h"
+#include "common/camera/fit_lens.h"
 #include "common/virtual/camera/sheet.h"
 
 namespace footing::lens_calibration {

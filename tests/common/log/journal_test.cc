@@ -18,8 +18,8 @@
 #include <sstream>
 #include <string>
 
-#include "common/log/fields.h"
-#include "common/log/log.h"
+#include "common/runtime/fields.h"
+#include "common/runtime/log.h"
 
 // Each test runs in a process of its own whose /run holds a journal socket of the test.
 namespace footing::log {

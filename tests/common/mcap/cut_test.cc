@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "common/mcap/encode.h"
+#include "common/recording/encode.h"
 #include "tests/common/mcap/sample_file.h"
 
 namespace footing::mcap {

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/mcap/decode.h"
-#include "common/mcap/summary.h"
+#include "common/recording/decode.h"
+#include "common/recording/summary.h"
 #include "tests/common/mcap/sample_file.h"
 
 namespace footing::mcap {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/mcap/walk.h"
-#include "common/mcap/writer.h"
+#include "common/recording/walk.h"
+#include "common/recording/writer.h"
 
 namespace footing::mcap {
 

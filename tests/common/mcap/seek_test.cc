@@ -1,4 +1,4 @@
-#include "common/mcap/seek.h"
+#include "common/recording/seek.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-#include "common/mcap/writer.h"
+#include "common/recording/writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/mcap/crc.h"
-#include "common/mcap/summary.h"
+#include "common/recording/crc.h"
+#include "common/recording/summary.h"
 #include "tests/common/mcap/sample_file.h"
 
 namespace footing::mcap {

@@ -1,4 +1,4 @@
-#include "common/monitoring/metrics_endpoint.h"
+#include "common/net/metrics_endpoint.h"
 
 #include <sys/stat.h>
 

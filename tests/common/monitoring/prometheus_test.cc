@@ -1,4 +1,4 @@
-#include "common/monitoring/prometheus.h"
+#include "common/net/prometheus.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "common/monitoring/stats_collector.h"
+#include "common/net/stats_collector.h"
 
 #include <gtest/gtest.h>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 #include "tests/common/transport/server_fixture.h"
 

@@ -1,8 +1,8 @@
-#include "common/playback/recorded_server.h"
+#include "common/recording/recorded_server.h"
 
 #include <gtest/gtest.h>
 
-#include "common/units/instant.h"
+#include "common/base/instant.h"
 
 namespace footing::playback {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/playback/seekable_recording.h"
+#include "common/recording/seekable_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "common/recording/recording_writer.h"
-#include "common/units/instant.h"
+#include "common/base/instant.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::playback {

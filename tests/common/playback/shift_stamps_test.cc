@@ -1,4 +1,4 @@
-#include "common/playback/shift_stamps.h"
+#include "common/recording/shift_stamps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "common/playback/tick_player.h"
+#include "common/recording/tick_player.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <boost/asio/io_context.hpp>
 
 #include "common/recording/recording_writer.h"
-#include "common/timer/timer.h"
+#include "common/runtime/timer.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::playback {

@@ -1,9 +1,9 @@
-#include "common/preview/preview.h"
+#include "common/camera/preview.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/preview/preview_reader.h"
+#include "common/camera/preview_reader.h"
 
 namespace footing::preview {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mcap/walk.h"
+#include "common/recording/walk.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/repair.h"
 #include "common/recording/schema.h"

@@ -6,7 +6,7 @@
 
 #include "common/recording/mapped_file.h"
 #include "common/recording/recorded_session.h"
-#include "common/units/instant.h"
+#include "common/base/instant.h"
 #include "tests/common/recording/recording_fixture.h"
 
 namespace footing::recording {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "common/mcap/summary.h"
+#include "common/recording/summary.h"
 #include "tests/common/recording/recording_fixture.h"
 
 namespace footing::recording {

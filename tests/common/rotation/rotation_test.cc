@@ -1,4 +1,4 @@
-#include "common/rotation/rotation.h"
+#include "common/base/rotation.h"
 
 #include <gtest/gtest.h>
 

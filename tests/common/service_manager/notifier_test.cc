@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "common/service_manager/service_manager.h"
-#include "common/timer/timer.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::service_manager {
 namespace {

@@ -1,5 +1,5 @@
 // The switching of a light on frames of a renderer that shares no code with the finder.
-#include "common/sphere/blink.h"
+#include "common/camera/blink.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "common/sphere/cone.h"
+#include "common/camera/cone.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/sphere/blobs.h"
-#include "common/sphere/lens.h"
-#include "common/sphere/profile_table.h"
+#include "common/camera/blobs.h"
+#include "common/camera/lens.h"
+#include "common/camera/profile_table.h"
 #include "common/virtual/camera/lens.h"
 
 namespace footing::sphere {

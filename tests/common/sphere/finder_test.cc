@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "common/sphere/find.h"
+#include "common/camera/find.h"
 #include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
 #include "common/virtual/camera/yuyv.h"

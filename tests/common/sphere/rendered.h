@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/sphere/image.h"
+#include "common/camera/image.h"
 #include "common/virtual/camera/scene.h"
 
 namespace footing::sphere {

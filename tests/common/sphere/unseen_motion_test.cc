@@ -1,4 +1,4 @@
-#include "common/sphere/unseen_motion.h"
+#include "common/camera/unseen_motion.h"
 
 #include <gtest/gtest.h>
 

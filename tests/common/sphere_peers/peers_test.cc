@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "common/sphere/find.h"
+#include "common/camera/find.h"
 #include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
 #include "tests/common/sphere/rendered.h"

@@ -1,4 +1,4 @@
-#include "common/subject/subject.h"
+#include "common/runtime/subject.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-#include "common/text/csv.h"
+#include "common/base/csv.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/text/fnv.h"
-#include "common/text/quantile.h"
+#include "common/base/fnv.h"
+#include "common/base/quantile.h"
 
 namespace footing::text {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/text/json_text.h"
+#include "common/base/json_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "common/text/lines.h"
+#include "common/base/lines.h"
 
 #include <gtest/gtest.h>
 

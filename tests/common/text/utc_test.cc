@@ -1,4 +1,4 @@
-#include "common/text/utc.h"
+#include "common/base/utc.h"
 
 #include <gtest/gtest.h>
 

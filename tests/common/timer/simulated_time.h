@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/clock/timekeeper.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timekeeper.h"
 
 namespace footing::timer {
 

@@ -1,4 +1,4 @@
-#include "common/timer/timer.h"
+#include "common/runtime/timer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/clock/clock.h"
+#include "common/runtime/clock.h"
 #include "tests/common/timer/simulated_time.h"
 
 namespace footing::timer {

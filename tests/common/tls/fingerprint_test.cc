@@ -1,4 +1,4 @@
-#include "common/tls/fingerprint.h"
+#include "common/net/fingerprint.h"
 
 #include <gtest/gtest.h>
 

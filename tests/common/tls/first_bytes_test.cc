@@ -1,4 +1,4 @@
-#include "common/tls/first_bytes.h"
+#include "common/net/first_bytes.h"
 
 #include <gtest/gtest.h>
 

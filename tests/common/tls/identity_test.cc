@@ -1,11 +1,11 @@
-#include "common/tls/identity.h"
+#include "common/net/identity.h"
 
 #include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "common/tls/fingerprint.h"
+#include "common/net/fingerprint.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::tls {

@@ -1,10 +1,10 @@
-#include "common/tls/known_servers.h"
+#include "common/net/known_servers.h"
 
 #include <sys/stat.h>
 
 #include <fstream>
 
-#include "common/tls/fingerprint.h"
+#include "common/net/fingerprint.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::tls {

@@ -1,12 +1,12 @@
-#include "common/transport/access.h"
+#include "common/net/access.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
 
-#include "common/tls/fingerprint.h"
-#include "common/tls/identity.h"
+#include "common/net/fingerprint.h"
+#include "common/net/identity.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::transport {

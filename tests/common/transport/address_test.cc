@@ -1,4 +1,4 @@
-#include "common/transport/address.h"
+#include "common/net/address.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/transport/run_folder.h"
-#include "common/transport/socket.h"
+#include "common/net/run_folder.h"
+#include "common/net/socket.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::transport {

@@ -1,4 +1,4 @@
-#include "common/transport/admission.h"
+#include "common/net/admission.h"
 
 #include <gtest/gtest.h>
 

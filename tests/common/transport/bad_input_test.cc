@@ -1,6 +1,6 @@
 #include <random>
 
-#include "common/transport/framing.h"
+#include "common/net/framing.h"
 #include "tests/common/transport/server_fixture.h"
 
 namespace footing::transport {

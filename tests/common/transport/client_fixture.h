@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/clock/clock.h"
-#include "common/transport/client.h"
+#include "common/runtime/clock.h"
+#include "common/net/client.h"
 #include "tests/common/transport/server_fixture.h"
 
 namespace footing::transport {

@@ -1,4 +1,4 @@
-#include "common/transport/command_content.h"
+#include "common/net/command_content.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

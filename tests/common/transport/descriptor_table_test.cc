@@ -1,4 +1,4 @@
-#include "common/transport/descriptor_table.h"
+#include "common/net/descriptor_table.h"
 
 #include <sys/resource.h>
 

@@ -6,11 +6,11 @@
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/write.hpp>
 
-#include "common/clock/clock.h"
-#include "common/transport/framing.h"
-#include "common/transport/token_bucket.h"
-#include "common/transport/turn_queue.h"
-#include "common/units/units.h"
+#include "common/runtime/clock.h"
+#include "common/net/framing.h"
+#include "common/net/token_bucket.h"
+#include "common/net/turn_queue.h"
+#include "common/base/units.h"
 #include "tests/common/transport/server_fixture.h"
 
 namespace footing::transport {

@@ -1,4 +1,4 @@
-#include "common/transport/framed_connection.h"
+#include "common/net/framed_connection.h"
 
 #include <boost/asio/local/connect_pair.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/transport/framing.h"
+#include "common/net/framing.h"
 #include "tests/common/transport/io_fixture.h"
 
 namespace footing::transport {

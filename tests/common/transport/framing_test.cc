@@ -1,4 +1,4 @@
-#include "common/transport/framing.h"
+#include "common/net/framing.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "common/timer/run_until.h"
-#include "common/transport/address.h"
+#include "common/runtime/run_until.h"
+#include "common/net/address.h"
 
 namespace footing::transport {
 

@@ -1,4 +1,4 @@
-#include "common/transport/listener.h"
+#include "common/net/listener.h"
 
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/transport/run_folder.h"
+#include "common/net/run_folder.h"
 #include "tests/common/temporary_folder.h"
 #include "tests/common/transport/io_fixture.h"
 

@@ -1,4 +1,4 @@
-#include "common/transport/message_parser.h"
+#include "common/net/message_parser.h"
 
 #include <gtest/gtest.h>
 

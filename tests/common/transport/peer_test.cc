@@ -1,4 +1,4 @@
-#include "common/transport/peer.h"
+#include "common/net/peer.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/framing.h"
+#include "common/net/framing.h"
 #include "footing/v1/session.pb.h"
 
 /// The examples of docs/protocol.md: fenced blocks of the language "frame" (or "device-frame") with

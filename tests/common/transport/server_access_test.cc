@@ -2,9 +2,9 @@
 
 #include <fstream>
 
-#include "common/tls/fingerprint.h"
-#include "common/transport/access.h"
-#include "common/transport/client_messages.h"
+#include "common/net/fingerprint.h"
+#include "common/net/access.h"
+#include "common/net/client_messages.h"
 #include "tests/common/transport/tls_fixture.h"
 
 /// Who comes in, and what a client gives away before it knows to whom.

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/framed_connection.h"
-#include "common/transport/listener.h"
-#include "common/transport/server.h"
-#include "common/transport/socket.h"
+#include "common/net/framed_connection.h"
+#include "common/net/listener.h"
+#include "common/net/server.h"
+#include "common/net/socket.h"
 #include "tests/common/transport/io_fixture.h"
 
 namespace footing::transport {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <iostream>
 
-#include "common/transport/server.h"
+#include "common/net/server.h"
 #include "footing/v1/session.pb.h"
 
 /// A server whose every number is known, for decoders that are not ours:

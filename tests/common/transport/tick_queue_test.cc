@@ -1,4 +1,4 @@
-#include "common/transport/tick_queue.h"
+#include "common/net/tick_queue.h"
 
 #include <gtest/gtest.h>
 

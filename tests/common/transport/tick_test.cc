@@ -1,13 +1,13 @@
-#include "common/transport/tick.h"
+#include "common/net/tick.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "common/transport/framing.h"
-#include "common/transport/publication.h"
-#include "common/transport/tick_rate.h"
+#include "common/net/framing.h"
+#include "common/net/publication.h"
+#include "common/net/tick_rate.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::transport {

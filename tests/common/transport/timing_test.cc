@@ -5,11 +5,11 @@
 #include <limits>
 #include <random>
 
-#include "common/transport/answers.h"
-#include "common/transport/backoff.h"
-#include "common/transport/client.h"
-#include "common/transport/clock_offset.h"
-#include "common/transport/decimator.h"
+#include "common/net/answers.h"
+#include "common/net/backoff.h"
+#include "common/net/client.h"
+#include "common/net/clock_offset.h"
+#include "common/net/decimator.h"
 
 namespace footing::transport {
 namespace {

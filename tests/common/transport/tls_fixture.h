@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "common/tls/known_servers.h"
-#include "common/transport/client.h"
+#include "common/net/known_servers.h"
+#include "common/net/client.h"
 #include "tests/common/temporary_folder.h"
 #include "tests/common/transport/server_fixture.h"
 

@@ -3,7 +3,7 @@
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 
-#include "common/tls/fingerprint.h"
+#include "common/net/fingerprint.h"
 
 namespace footing::transport {
 namespace {

@@ -1,10 +1,10 @@
-#include "common/transport/token.h"
+#include "common/net/token.h"
 
 #include <sys/stat.h>
 
 #include <fstream>
 
-#include "common/transport/client_messages.h"
+#include "common/net/client_messages.h"
 #include "tests/common/temporary_folder.h"
 #include "tests/common/transport/server_fixture.h"
 

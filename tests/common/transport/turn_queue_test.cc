@@ -1,4 +1,4 @@
-#include "common/transport/turn_queue.h"
+#include "common/net/turn_queue.h"
 
 #include <gtest/gtest.h>
 

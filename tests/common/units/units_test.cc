@@ -1,4 +1,4 @@
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 #include <gtest/gtest.h>
 

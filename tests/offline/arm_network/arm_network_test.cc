@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "common/units/units.h"
-#include "daemon/offline/arm_network/network.h"
-#include "daemon/offline/arm_network/training.h"
+#include "common/base/units.h"
+#include "daemon/offline/learning/network.h"
+#include "daemon/offline/learning/training.h"
 
 namespace footing::arm_network {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::learning {
 namespace {

@@ -5,11 +5,11 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
-#include "common/virtual/choreography/perform.h"
-#include "common/virtual/choreography/script.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/people/perform.h"
+#include "common/virtual/people/script.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/scene.h"
 #include "daemon/offline/learning/registration.h"
 
 namespace footing::learning {

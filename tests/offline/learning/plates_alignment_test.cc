@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/motion_files/load.h"
-#include "common/virtual/sensors/ground_reaction.h"
+#include "common/virtual/options/load.h"
+#include "common/virtual/devices/ground_reaction.h"
 #include "daemon/offline/learning/time_alignment.h"
 #include "tests/common/virtual/motion/shared_data.h"
 

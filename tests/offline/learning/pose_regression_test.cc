@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::learning {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::learning {
 

@@ -6,7 +6,7 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::learning {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/offline/learning/recorded_session.h"
 
 namespace footing::learning {

@@ -1,10 +1,10 @@
-#include "daemon/offline/legs/leg_gap.h"
+#include "daemon/offline/analysis/leg_gap.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::legs {
 namespace {

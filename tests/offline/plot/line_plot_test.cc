@@ -1,4 +1,4 @@
-#include "daemon/offline/plot/line_plot.h"
+#include "daemon/offline/analysis/line_plot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/offline/plot/plan_plot.h"
+#include "daemon/offline/analysis/plan_plot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/offline/plot/stick_plot.h"
+#include "daemon/offline/analysis/stick_plot.h"
 
 #include <gtest/gtest.h>
 

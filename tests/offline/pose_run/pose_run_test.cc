@@ -7,7 +7,7 @@
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
 #include "daemon/offline/pose_run/held_hands.h"
-#include "daemon/simulation/arms/arm_geometry.h"
+#include "daemon/simulation/pose/arm_geometry.h"
 #include "tests/offline/pose_run/standing.h"
 
 namespace footing::pose_run {

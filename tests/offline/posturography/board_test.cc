@@ -1,4 +1,4 @@
-#include "daemon/offline/posturography/board.h"
+#include "daemon/offline/analysis/board.h"
 
 #include <gtest/gtest.h>
 

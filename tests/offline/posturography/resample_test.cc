@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
-#include "daemon/offline/posturography/sway.h"
+#include "common/base/units.h"
+#include "daemon/offline/analysis/sway.h"
 
 namespace footing::posturography {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/offline/posturography/sway.h"
+#include "daemon/offline/analysis/sway.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::posturography {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/offline/tracking/tracking.h"
+#include "daemon/offline/analysis/tracking.h"
 
 #include <gtest/gtest.h>
 

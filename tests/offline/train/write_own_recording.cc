@@ -3,7 +3,7 @@
 
 #include "common/board/layout.h"
 #include "common/recording/recording_writer.h"
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/wire/wire.h"
 #include "tests/offline/learning/made_take.h"

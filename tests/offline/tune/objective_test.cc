@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::tune {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "daemon/offline/tune/team.h"
 #include "daemon/offline/tune/texts.h"
-#include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/engine_files.h"
 
 namespace footing::tune {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/result/result.h"
+#include "common/base/result.h"
 #include "daemon/sensor/devices/source.h"
 
 namespace footing::recordings {

@@ -10,10 +10,10 @@
 #include <cstring>
 #include <utility>
 
-#include "common/clock/clock.h"
-#include "common/transport/client_messages.h"
-#include "common/transport/framing.h"
-#include "common/transport/socket.h"
+#include "common/runtime/clock.h"
+#include "common/net/client_messages.h"
+#include "common/net/framing.h"
+#include "common/net/socket.h"
 
 namespace footing::crowd {
 namespace {

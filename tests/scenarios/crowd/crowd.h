@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/result/result.h"
-#include "common/transport/address.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
 #include "tests/scenarios/crowd/reader.h"
 
 namespace footing::crowd {

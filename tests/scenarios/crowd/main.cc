@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
-#include "common/clock/clock.h"
-#include "common/text/quantile.h"
+#include "common/runtime/clock.h"
+#include "common/base/quantile.h"
 #include "tests/scenarios/crowd/crowd.h"
 
 namespace {

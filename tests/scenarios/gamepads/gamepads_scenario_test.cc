@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "common/clock/clock.h"
-#include "common/transport/client.h"
-#include "common/transport/framed_connection.h"
+#include "common/runtime/clock.h"
+#include "common/net/client.h"
+#include "common/net/framed_connection.h"
 #include "common/virtual/devices/pro_controller.h"
 #include "common/virtual/devices/wiimote.h"
 #include "footing/v1/device.pb.h"

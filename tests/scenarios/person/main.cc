@@ -16,8 +16,8 @@
 
 #include "clients/stream/dialer.h"
 #include "clients/stream/setup_body.h"
-#include "common/log/log.h"
-#include "common/transport/address.h"
+#include "common/runtime/log.h"
+#include "common/net/address.h"
 
 namespace {
 

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "common/clock/clock.h"
-#include "common/transport/client.h"
-#include "common/transport/socket.h"
+#include "common/runtime/clock.h"
+#include "common/net/client.h"
+#include "common/net/socket.h"
 
 extern char** environ;
 

@@ -1,11 +1,11 @@
-#include "daemon/sensor/calibration/acceleration.h"
+#include "daemon/sensor/reports/acceleration.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::calibration {
 namespace {

@@ -3,10 +3,10 @@
 #include <variant>
 #include <vector>
 
-#include "daemon/sensor/calibration/acceleration.h"
-#include "daemon/sensor/calibration/board.h"
-#include "daemon/sensor/calibration/checksum.h"
-#include "daemon/sensor/calibration/motion_plus.h"
+#include "daemon/sensor/reports/acceleration.h"
+#include "daemon/sensor/reports/board.h"
+#include "daemon/sensor/reports/checksum.h"
+#include "daemon/sensor/reports/calibration_motion_plus.h"
 #include "daemon/sensor/reports/extension.h"
 #include "daemon/sensor/reports/input_report.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/sensor/calibration/gyroscope_bias.h"
+#include "daemon/sensor/reports/gyroscope_bias.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::calibration {
 namespace {

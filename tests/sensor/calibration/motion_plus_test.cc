@@ -1,4 +1,4 @@
-#include "daemon/sensor/calibration/motion_plus.h"
+#include "daemon/sensor/reports/calibration_motion_plus.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::calibration {
 namespace {

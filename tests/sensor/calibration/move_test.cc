@@ -1,4 +1,4 @@
-#include "daemon/sensor/calibration/move.h"
+#include "daemon/sensor/reports/move.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/common/move_calibrations.h"
 
 namespace footing::calibration {

@@ -9,11 +9,11 @@
 #include "common/virtual/devices/balance_board.h"
 #include "common/virtual/devices/ps_move.h"
 #include "common/virtual/devices/wiimote.h"
-#include "daemon/sensor/calibration/acceleration.h"
-#include "daemon/sensor/calibration/board.h"
-#include "daemon/sensor/calibration/motion_plus.h"
-#include "daemon/sensor/calibration/move.h"
-#include "daemon/sensor/calibration/nunchuk.h"
+#include "daemon/sensor/reports/acceleration.h"
+#include "daemon/sensor/reports/board.h"
+#include "daemon/sensor/reports/calibration_motion_plus.h"
+#include "daemon/sensor/reports/move.h"
+#include "daemon/sensor/reports/nunchuk.h"
 #include "daemon/sensor/reports/camera.h"
 
 namespace footing::calibration {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/framed_connection.h"
-#include "common/transport/socket.h"
+#include "common/net/framed_connection.h"
+#include "common/net/socket.h"
 #include "daemon/sensor/devices/socket_source.h"
 #include "footing/v1/device.pb.h"
 #include "tests/common/transport/io_fixture.h"

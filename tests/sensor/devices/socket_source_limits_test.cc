@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-#include "common/timer/timer.h"
+#include "common/runtime/timer.h"
 #include "footing/v1/device.pb.h"
 #include "tests/common/timer/simulated_time.h"
 #include "tests/sensor/devices/socket_source_fixture.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/transport/framing.h"
+#include "common/net/framing.h"
 #include "footing/v1/device.pb.h"
 #include "tests/sensor/devices/socket_source_fixture.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/sensor/features/chain.h"
 
 /// Links that lose, repeat and delay, samples that make no sense, rigs of every kind.

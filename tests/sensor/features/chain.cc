@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
-#include "daemon/sensor/signal/kalman_filter.h"
+#include "common/base/units.h"
+#include "daemon/sensor/features/kalman_filter.h"
 
 namespace footing::features {
 

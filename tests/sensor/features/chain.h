@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/stream/sensor.h"
-#include "common/virtual/wrists/accelerometer.h"
-#include "common/virtual/wrists/hand_motion.h"
+#include "common/virtual/devices/accelerometer.h"
+#include "common/virtual/devices/hand_motion.h"
 #include "daemon/sensor/features/rig_features.h"
 
 namespace footing::features {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/sensor/features/chain.h"
 
 /// How long after a change of motion the features are right, and stay so.

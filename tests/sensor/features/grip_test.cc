@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 /// How two controllers lie in their hands, rotated about their fronts.
 namespace footing::features {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/sensor/features/cadence.h"
 #include "daemon/sensor/features/cycle.h"
 #include "daemon/sensor/features/sample_grid.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/offline/eval/chain/features_chain.h"
-#include "daemon/offline/eval/features/input.h"
+#include "daemon/offline/analysis/features_chain.h"
+#include "daemon/offline/eval/features_input.h"
 
 /// Real recordings: shaken stretches move, still and slowly tilted ones do not.
 namespace footing::eval {

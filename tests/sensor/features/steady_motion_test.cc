@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/sensor/features/chain.h"
 
 /// Steady motion: the numbers of the gait paper's section 6 against those the motion was made from.

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/sensor/features/chain.h"
 
 /// Hands that swing together are seen before their period is.

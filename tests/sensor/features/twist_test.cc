@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/sensor/features/cycle.h"
 #include "tests/sensor/features/chain.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/sensor/hands/hands.h"
+#include "daemon/sensor/mounting/hands.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "daemon/sensor/hands/exposure_clock.h"
-#include "daemon/sensor/hands/refusals.h"
+#include "daemon/sensor/mounting/exposure_clock.h"
+#include "daemon/sensor/mounting/refusals.h"
 
 namespace footing::hands {
 namespace {

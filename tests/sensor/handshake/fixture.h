@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/virtual/devices/controller.h"
-#include "daemon/sensor/kinds/registry/kind.h"
+#include "daemon/sensor/kinds/kind.h"
 
 namespace footing::handshake {
 

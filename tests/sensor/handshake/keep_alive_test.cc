@@ -1,4 +1,4 @@
-#include "daemon/sensor/handshake/keep_alive.h"
+#include "daemon/sensor/reports/keep_alive.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 
 #include "common/virtual/devices/pro_controller.h"
 #include "common/virtual/devices/wiimote.h"
-#include "daemon/sensor/decode/gamepad.h"
-#include "daemon/sensor/kinds/pro_controller/pro_controller.h"
-#include "daemon/sensor/kinds/registry/kind.h"
+#include "daemon/sensor/kinds/gamepad.h"
+#include "daemon/sensor/kinds/pro_controller.h"
+#include "daemon/sensor/kinds/kind.h"
 
 namespace footing::kinds {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "common/virtual/devices/link_model.h"
-#include "common/virtual/noise/random.h"
-#include "daemon/sensor/link/device_clock.h"
+#include "common/virtual/devices/random.h"
+#include "daemon/sensor/reports/device_clock.h"
 #include "tests/sensor/link/sampled_time_error.h"
 
 namespace footing::link {

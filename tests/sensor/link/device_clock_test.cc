@@ -1,4 +1,4 @@
-#include "daemon/sensor/link/device_clock.h"
+#include "daemon/sensor/reports/device_clock.h"
 
 #include <gtest/gtest.h>
 

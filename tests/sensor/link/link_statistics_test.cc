@@ -1,4 +1,4 @@
-#include "daemon/sensor/link/link_statistics.h"
+#include "daemon/sensor/reports/link_statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/sensor/link/outbox.h"
+#include "daemon/sensor/reports/outbox.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/wrists/accelerometer.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/accelerometer.h"
 
 namespace footing::mounting {
 namespace {

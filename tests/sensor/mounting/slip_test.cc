@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::mounting {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/devices/ps_move.h"
 #include "daemon/sensor/setup/calibration_store.h"
 #include "tests/sensor/service/kept.h"

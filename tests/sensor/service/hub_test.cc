@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/sensor/service/fixture.h"
 
 namespace footing::sensor {

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/sensor/service/fixture.h"
 
 namespace footing::sensor {

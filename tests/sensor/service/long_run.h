@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/devices/balance_board.h"
 #include "common/virtual/devices/link_model.h"
 #include "daemon/sensor/service/hub.h"

@@ -8,7 +8,7 @@
 #include <semaphore>
 #include <vector>
 
-#include "common/timer/run_until.h"
+#include "common/runtime/run_until.h"
 
 namespace footing::setup {
 namespace {

@@ -1,12 +1,12 @@
-#include "daemon/sensor/signal/kalman_filter.h"
+#include "daemon/sensor/features/kalman_filter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::signal {
 namespace {

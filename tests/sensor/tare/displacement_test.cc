@@ -1,4 +1,4 @@
-#include "daemon/sensor/tare/displacement.h"
+#include "daemon/sensor/mounting/displacement.h"
 
 #include <gtest/gtest.h>
 

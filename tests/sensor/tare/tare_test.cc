@@ -1,11 +1,11 @@
-#include "daemon/sensor/tare/tare.h"
+#include "daemon/sensor/mounting/tare.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::tare {
 namespace {

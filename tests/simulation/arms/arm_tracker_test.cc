@@ -1,4 +1,4 @@
-#include "daemon/simulation/arms/arm_tracker.h"
+#include "daemon/simulation/pose/arm_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "daemon/simulation/arms/arm_geometry.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "daemon/simulation/pose/arm_geometry.h"
 #include "tests/simulation/allocations.h"
 
 namespace footing::arms {

@@ -1,4 +1,4 @@
-#include "daemon/simulation/arms/attitude_filter.h"
+#include "daemon/simulation/pose/attitude_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::arms {
 namespace {

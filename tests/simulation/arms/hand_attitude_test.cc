@@ -1,4 +1,4 @@
-#include "daemon/simulation/arms/hand_attitude.h"
+#include "daemon/simulation/pose/hand_attitude.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <functional>
 #include <limits>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::arms {
 namespace {

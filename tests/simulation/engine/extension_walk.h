@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/engine/state.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/simulation/allocations.h"
 #include "tests/simulation/engine/engine_fixture.h"
 

@@ -1,6 +1,6 @@
 #include "daemon/simulation/engine/failure.h"
 
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/simulation/engine/engine_fixture.h"
 
 namespace footing::engine {

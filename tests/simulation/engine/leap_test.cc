@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/engine/state.h"
 #include "tests/simulation/engine/engine_fixture.h"
 

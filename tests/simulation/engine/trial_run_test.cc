@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "daemon/simulation/engine/track_world.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/simulation/allocations.h"
 #include "tests/simulation/engine/engine_fixture.h"
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/running.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::gait {

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "common/config/data_file.h"
+#include "common/runtime/data_file.h"
 #include "daemon/simulation/biped/limits.h"
 #include "daemon/simulation/gait/phase.h"
 #include "daemon/simulation/gait/transition.h"

@@ -1,6 +1,6 @@
 #include "daemon/simulation/gait/momentum.h"
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/gait/controller.h"
 #include "tests/simulation/test_world.h"
 

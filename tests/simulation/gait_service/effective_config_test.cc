@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/engine_files.h"
 
 namespace footing::gait_service {
 namespace {

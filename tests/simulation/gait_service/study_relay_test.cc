@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "common/lease_control/lease_control.h"
+#include "common/net/lease_control.h"
 
 namespace footing::gait_service {
 namespace {

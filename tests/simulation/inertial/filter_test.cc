@@ -1,4 +1,4 @@
-#include "daemon/simulation/inertial/filter.h"
+#include "daemon/simulation/pose/filter.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "common/units/units.h"
-#include "common/virtual/wrists/accelerometer.h"
-#include "daemon/offline/eval/chain/features_chain.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/accelerometer.h"
+#include "daemon/offline/analysis/features_chain.h"
 #include "daemon/simulation/mapping/inputs.h"
 
 namespace footing::mapping {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/simulation/mapping/inputs.h"
 
 namespace footing::mapping {

@@ -3,10 +3,10 @@
 #include <functional>
 #include <vector>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/wrists/hand_motion.h"
-#include "daemon/offline/eval/chain/features_chain.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/hand_motion.h"
+#include "daemon/offline/analysis/features_chain.h"
 #include "daemon/simulation/mapping/wrist.h"
 #include "tests/simulation/test_world.h"
 

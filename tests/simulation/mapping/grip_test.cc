@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/units/units.h"
-#include "common/virtual/users/person.h"
-#include "daemon/offline/eval/chain/features_chain.h"
+#include "common/base/units.h"
+#include "common/virtual/people/person.h"
+#include "daemon/offline/analysis/features_chain.h"
 #include "daemon/simulation/mapping/arm.h"
 #include "tests/simulation/test_world.h"
 

@@ -1,6 +1,6 @@
 #include "daemon/simulation/mapping/leg.h"
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/simulation/mapping/settled.h"
 #include "tests/simulation/test_world.h"
 

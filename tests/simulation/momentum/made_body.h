@@ -4,8 +4,8 @@
 #include <functional>
 #include <limits>
 
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/biped/body_state.h"
 
 namespace footing::oracle {

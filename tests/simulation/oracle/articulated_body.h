@@ -5,7 +5,7 @@
 #include <array>
 
 #include "daemon/simulation/biped/parameters.h"
-#include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/biped/world.h"
 
 /// A second engine for the same biped, to judge the first one by: Featherstone's articulated-body
 /// algorithm (Rigid Body Dynamics Algorithms, 2008, table 7.1) and spring-damper contact, written

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/simulation/oracle/articulated_body.h"
 #include "tests/simulation/test_world.h"
 

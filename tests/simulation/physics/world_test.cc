@@ -1,8 +1,8 @@
-#include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/biped/world.h"
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::physics {

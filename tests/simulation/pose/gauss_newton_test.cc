@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/simulation/pose/made_poses.h"
 
 namespace footing::pose {

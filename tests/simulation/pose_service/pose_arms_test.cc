@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 
 namespace footing::pose_service {

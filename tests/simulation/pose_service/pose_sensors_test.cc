@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "tests/simulation/pose_service/pose_ticks.h"
 
 namespace footing::pose_service {

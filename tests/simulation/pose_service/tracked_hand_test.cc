@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "common/sphere/find.h"
-#include "common/units/units.h"
+#include "common/camera/find.h"
+#include "common/base/units.h"
 #include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
 

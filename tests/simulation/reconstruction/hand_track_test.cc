@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/body/skeleton_points.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::reconstruction {
 namespace {

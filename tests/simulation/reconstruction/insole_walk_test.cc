@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "daemon/simulation/reconstruction/step_pattern.h"
 #include "tests/simulation/reconstruction/made_person.h"
 

@@ -7,9 +7,9 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/virtual/motion/motion.h"
-#include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/ground_reaction.h"
+#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/ground_reaction.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::reconstruction {

@@ -1,10 +1,10 @@
-#include "daemon/simulation/terrain/append.h"
+#include "daemon/simulation/biped/append.h"
 
 #include <string>
 
-#include "common/units/units.h"
-#include "daemon/simulation/terrain/ground.h"
-#include "daemon/simulation/terrain/track.h"
+#include "common/base/units.h"
+#include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::terrain {

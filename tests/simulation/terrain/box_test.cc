@@ -1,9 +1,9 @@
-#include "daemon/simulation/terrain/box.h"
+#include "daemon/simulation/biped/box.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/biped/ground.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::terrain {

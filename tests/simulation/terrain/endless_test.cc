@@ -1,11 +1,11 @@
-#include "daemon/simulation/terrain/endless.h"
+#include "daemon/simulation/biped/endless.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "common/units/units.h"
-#include "daemon/simulation/terrain/append.h"
+#include "common/base/units.h"
+#include "daemon/simulation/biped/append.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::terrain {

@@ -1,11 +1,11 @@
-#include "daemon/simulation/terrain/spot.h"
+#include "daemon/simulation/biped/spot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "daemon/simulation/terrain/ground.h"
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::terrain {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 
 namespace footing::terrain {
 namespace {

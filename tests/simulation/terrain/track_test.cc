@@ -1,11 +1,11 @@
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 
 #include <cmath>
 #include <numbers>
 #include <set>
 
-#include "daemon/simulation/terrain/box.h"
-#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/biped/box.h"
+#include "daemon/simulation/biped/ground.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::terrain {

@@ -1,10 +1,10 @@
-#include "daemon/simulation/trial/trial.h"
+#include "daemon/simulation/biped/trial.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::trial {

@@ -1,4 +1,4 @@
-#include "clients/view/timeline/align.h"
+#include "clients/view/scene/align.h"
 
 #include <gtest/gtest.h>
 

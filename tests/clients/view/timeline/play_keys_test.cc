@@ -1,4 +1,4 @@
-#include "clients/view/timeline/play_keys.h"
+#include "clients/view/scene/play_keys.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "clients/view/timeline/timeline.h"
+#include "clients/view/scene/timeline.h"
 
 namespace footing::timeline {
 

@@ -1,9 +1,9 @@
-#include "clients/view/timeline/timeline.h"
+#include "clients/view/scene/timeline.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/view/timeline/timeline_text.h"
+#include "clients/view/scene/timeline_text.h"
 #include "tests/clients/view/timeline/sample_timeline.h"
 
 namespace footing::timeline {

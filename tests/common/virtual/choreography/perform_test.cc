@@ -1,4 +1,4 @@
-#include "common/virtual/choreography/perform.h"
+#include "common/virtual/people/perform.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <string>
 
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
-#include "common/virtual/choreography/posture.h"
-#include "common/virtual/sensors/board_cells.h"
-#include "common/virtual/sensors/scene.h"
+#include "common/base/units.h"
+#include "common/virtual/people/posture.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/scene.h"
 
 namespace footing::choreography {
 namespace {

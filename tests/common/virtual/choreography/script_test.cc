@@ -1,10 +1,10 @@
-#include "common/virtual/choreography/script.h"
+#include "common/virtual/people/script.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/units/units.h"
-#include "common/virtual/choreography/course.h"
+#include "common/base/units.h"
+#include "common/virtual/people/course.h"
 
 namespace footing::choreography {
 namespace {

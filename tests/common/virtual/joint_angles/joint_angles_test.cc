@@ -1,4 +1,4 @@
-#include "common/virtual/joint_angles/joint_angles.h"
+#include "common/virtual/motion/joint_angles.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/skeleton.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::joint_angles {
 namespace {

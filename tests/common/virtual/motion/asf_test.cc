@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::motion {
 namespace {

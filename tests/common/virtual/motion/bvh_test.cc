@@ -4,8 +4,8 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
-#include "common/virtual/noise/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/random.h"
 
 namespace footing::motion {
 namespace {

@@ -5,7 +5,7 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/bvh.h"
 #include "tests/common/virtual/motion/shared_data.h"

@@ -8,8 +8,8 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
-#include "common/virtual/motion_files/load.h"
+#include "common/base/units.h"
+#include "common/virtual/options/load.h"
 #include "tests/common/virtual/motion/shared_data.h"
 
 namespace footing::motion {

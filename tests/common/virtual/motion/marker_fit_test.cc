@@ -5,13 +5,13 @@
 #include "common/body/body.h"
 #include "common/body/fit.h"
 #include "common/body/momentum.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/c3d.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/joint_centres.h"
 #include "common/virtual/motion/table.h"
 #include "common/virtual/motion/trc.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/devices/random.h"
 #include "tests/common/virtual/motion/shared_data.h"
 
 namespace footing::motion {

@@ -9,11 +9,11 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/rotation/rotation.h"
-#include "common/units/units.h"
+#include "common/base/rotation.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/motion_files/load.h"
-#include "common/virtual/noise/random.h"
+#include "common/virtual/options/load.h"
+#include "common/virtual/devices/random.h"
 #include "tests/common/virtual/motion/shared_data.h"
 
 namespace footing::motion {

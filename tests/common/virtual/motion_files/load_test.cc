@@ -1,4 +1,4 @@
-#include "common/virtual/motion_files/load.h"
+#include "common/virtual/options/load.h"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 
 #include "common/body/body.h"
 #include "common/body/landmarks.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/bvh.h"
 
 namespace footing::motion_files {

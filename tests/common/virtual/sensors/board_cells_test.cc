@@ -1,11 +1,11 @@
-#include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/devices/board_cells.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::virtual_sensors {
 namespace {

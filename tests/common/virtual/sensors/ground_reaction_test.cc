@@ -1,10 +1,10 @@
-#include "common/virtual/sensors/ground_reaction.h"
+#include "common/virtual/devices/ground_reaction.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::virtual_sensors {
 namespace {

@@ -1,10 +1,10 @@
-#include "common/virtual/sensors/held_device.h"
+#include "common/virtual/devices/held_device.h"
 
 #include <gtest/gtest.h>
 
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::virtual_sensors {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/virtual/sensors/insole_cells.h"
+#include "common/virtual/devices/insole_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "common/virtual/sensors/kinect_skeleton.h"
+#include "common/virtual/devices/kinect_skeleton.h"
 
 #include <gtest/gtest.h>
 
 #include "common/body/skeleton_points.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::virtual_sensors {
 namespace {

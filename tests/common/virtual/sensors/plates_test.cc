@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/motion_files/load.h"
-#include "common/virtual/sensors/impact_reaction.h"
+#include "common/virtual/options/load.h"
+#include "common/virtual/devices/impact_reaction.h"
 #include "tests/common/virtual/motion/shared_data.h"
 
 namespace footing::virtual_sensors {

@@ -1,4 +1,4 @@
-#include "common/virtual/sensors/scene.h"
+#include "common/virtual/devices/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
+#include "common/base/units.h"
 #include "common/virtual/motion/leg_solver.h"
 
 namespace footing::virtual_sensors {

@@ -1,12 +1,12 @@
-#include "common/virtual/users/driver.h"
+#include "common/virtual/people/driver.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
-#include "common/virtual/users/grip.h"
+#include "common/base/units.h"
+#include "common/virtual/people/grip.h"
 
 namespace footing::users {
 namespace {

@@ -1,11 +1,11 @@
-#include "common/virtual/users/person.h"
+#include "common/virtual/people/person.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::users {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/fusion/leg_split.h"
+#include "daemon/offline/eval/leg_split.h"
 
 #include <gtest/gtest.h>
 

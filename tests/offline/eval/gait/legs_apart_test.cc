@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/units/units.h"
-#include "daemon/offline/eval/gait/trial.h"
+#include "common/base/units.h"
+#include "daemon/offline/eval/gait_trial.h"
 #include "daemon/simulation/biped/limits.h"
 
 namespace footing::eval {

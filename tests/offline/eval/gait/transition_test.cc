@@ -1,10 +1,10 @@
-#include "daemon/offline/eval/gait/transition_trial.h"
+#include "daemon/offline/eval/transition_trial.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "common/units/units.h"
+#include "common/base/units.h"
 
 namespace footing::eval {
 namespace {

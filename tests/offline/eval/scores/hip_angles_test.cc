@@ -1,10 +1,10 @@
-#include "daemon/offline/eval/scores/hip_angles.h"
+#include "daemon/offline/analysis/hip_angles.h"
 
 #include <gtest/gtest.h>
 
 #include "common/body/skeleton.h"
-#include "common/units/units.h"
-#include "daemon/offline/eval/scores/pose_metrics.h"
+#include "common/base/units.h"
+#include "daemon/offline/analysis/pose_metrics.h"
 
 namespace footing::eval {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/tracks/jump_delays.h"
+#include "daemon/offline/eval/jump_delays.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/tracks/jump_events.h"
+#include "daemon/offline/eval/jump_events.h"
 
 #include <gtest/gtest.h>
 

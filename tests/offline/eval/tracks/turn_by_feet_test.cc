@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "common/virtual/users/person.h"
-#include "daemon/offline/eval/tracks/user_devices.h"
+#include "common/virtual/people/person.h"
+#include "daemon/offline/eval/user_devices.h"
 #include "daemon/simulation/mapping/leg.h"
 #include "tests/simulation/test_world.h"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/virtual/users/person.h"
-#include "daemon/offline/eval/tracks/user_devices.h"
+#include "common/virtual/people/person.h"
+#include "daemon/offline/eval/user_devices.h"
 
 namespace footing::eval {
 namespace {

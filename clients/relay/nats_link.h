@@ -1,0 +1,60 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "clients/relay/parser.h"
+#include "clients/relay/requests.h"
+#include "common/net/address.h"
+
+namespace footing::relay {
+
+struct NatsOptions {
+  transport::Address address;
+  std::string client_name;
+  nats::Login login;
+  std::size_t max_payload = (1u << 20) + 64;       ///< Of a message that comes.
+  std::size_t max_queued_bytes = 8u << 20;         ///< More that waits to be sent is dropped.
+  double backoff_min_s = 0.1, backoff_max_s = 1;   ///< Between tries.
+  double ping_interval_s = 1, dead_after_s = 3.5;  ///< A link on which nothing comes is dropped.
+};
+
+struct NatsLinkHandlers {
+  /// The server took us in; subscriptions are made already.
+  std::function<void()> on_up;
+  std::function<void(const std::string& why)> on_down;
+  /// Valid during the call.
+  std::function<void(const nats::Message&)> on_message;
+};
+
+/// A connection to a NATS server that is made again when it breaks. Everything runs on the
+/// io_context's one thread; handlers are never called from within a call to this class.
+class NatsLink {
+ public:
+  NatsLink(boost::asio::io_context& io, NatsOptions options, NatsLinkHandlers handlers);
+  ~NatsLink();
+  NatsLink(const NatsLink&) = delete;
+  NatsLink& operator=(const NatsLink&) = delete;
+
+  void Start();
+  void Stop();
+
+  /// Lasts over reconnections.
+  void Subscribe(const std::string& subject);
+  /// False, and nothing is sent, when the link is down, the server refuses messages as long as
+  /// this, or too much waits.
+  bool Publish(const std::string& subject, std::string_view payload, const std::string& reply = "");
+
+  bool up() const;
+  std::uint64_t dropped() const;  ///< Messages that Publish() refused since the link was up first.
+
+ private:
+  class Implementation;
+  std::shared_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::relay

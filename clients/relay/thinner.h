@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/net/decimator.h"
+#include "common/net/server.h"
+
+namespace footing::relay {
+
+/// Whether it can be counted on from this number and time: what comes from a broker may be
+/// anything.
+bool IsSound(const transport::TickNumber& number);
+
+/// Takes the ticks of one epoch and gives those that viewers get: of each channel of samples or
+/// poses at most `rate_hz` a second, the newest; retained channels and events whole, at once.
+///
+/// All sampled channels go out at the same instants, so that viewers get `rate_hz` frames a second
+/// however many devices there are. What waits for them goes with the next tick that comes when it
+/// is due, so that the last value before a pause is not lost. The tick behind a hole in the
+/// sequence is always given, with the hole. A plain value.
+class Thinner {
+ public:
+  struct Thinned {
+    transport::TickNumber number;
+    std::vector<transport::ChannelBytes> channels;
+  };
+
+  /// `rate_hz` 0: every tick. `last_sequence` has been had already.
+  Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence);
+
+  /// Nothing for a tick that is left out, was had already, or is not sound. missing_from of
+  /// `number` is ignored.
+  std::optional<Thinned> Take(const transport::TickNumber& number,
+                              std::vector<transport::ChannelBytes> channels);
+
+  /// Retained channels of a snapshot, as of a sequence: they go with the next tick. Those that a
+  /// later tick has brought meanwhile are left alone; all, when the snapshot is older than the
+  /// `last_sequence` of the beginning.
+  void TakeRetained(std::uint64_t sequence, std::vector<transport::ChannelBytes> channels);
+
+  std::uint64_t last_sequence() const { return last_sequence_; }
+  std::uint64_t missing() const { return missing_; }    ///< Ticks that never came.
+  std::uint64_t left_out() const { return left_out_; }  ///< Ticks of which nothing went on.
+
+ private:
+  double rate_hz_;
+  std::uint64_t begin_;  ///< Older retained channels are of no use.
+  std::uint64_t last_sequence_;
+  std::map<std::uint32_t, std::string> waiting_;  ///< Of channels of samples, by field.
+  std::map<std::uint32_t, std::string> retained_;
+  std::map<std::uint32_t, std::uint64_t> came_;  ///< Sequence of a retained channel's last value.
+  transport::Decimator decimator_;
+  std::uint64_t missing_ = 0;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace footing::relay

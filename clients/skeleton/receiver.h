@@ -1,0 +1,32 @@
+#pragma once
+
+#include <boost/asio/ip/udp.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "clients/skeleton/tracking/tracker.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
+
+namespace footing::skeleton {
+
+struct ReceiverOptions {
+  TrackerOptions tracker;
+  boost::asio::ip::udp::endpoint listen;
+  std::optional<transport::Address> to;   ///< footingd's device socket; none: nothing is published.
+  std::optional<transport::Address> web;  ///< Serves a page with a pose model there.
+  std::string pose_package;               ///< The folder of npm's @mediapipe/pose.
+  double seconds = 0;                     ///< Ends by itself after this; 0: by SIGINT or SIGTERM.
+  double most_packets_per_s = 50'000;     ///< More are dropped unread.
+};
+
+struct Reception {
+  nlohmann::ordered_json statistics;  ///< What --json prints: see docs/skeleton.md.
+  Result<void> published;             ///< No device: footingd was not there for all of `seconds`.
+};
+
+/// Receives until its end. Failure when it cannot listen.
+Result<Reception> RunReceiver(const ReceiverOptions& options);
+
+}  // namespace footing::skeleton

@@ -1,0 +1,109 @@
+#include "clients/skeleton/sender.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <csignal>
+
+#include "common/runtime/clock.h"
+#include "common/net/socket.h"
+#include "common/base/time.h"
+#include "common/base/units.h"
+
+namespace footing::skeleton {
+namespace {
+
+namespace asio = boost::asio;
+
+class Sender {
+ public:
+  Sender(const std::vector<ClipFrame>& clip, const SenderOptions& options)
+      : clip_(clip), options_(options), signals_(io_, SIGINT, SIGTERM), socket_(io_), next_(io_) {}
+
+  Result<nlohmann::ordered_json> Run() {
+    boost::system::error_code error;
+    socket_.open(options_.to.protocol(), error);
+    if (!error) socket_.connect(options_.to, error);
+    if (error) return Failure("cannot send to UDP: " + transport::MessageOf(error));
+    signals_.async_wait([this](const boost::system::error_code& failed, int) {
+      stopped_ = !failed;
+      next_.cancel();
+    });
+    began_ = std::chrono::steady_clock::now();
+    began_ns_ = clock::MonotonicNs();
+    SendLater();
+    io_.run();
+    return nlohmann::ordered_json{
+        {"seconds", NanosecondsToSeconds(clock::MonotonicNs() - began_ns_)},
+        {"frames", frame_},
+        {"packets", packets_},
+        {"bytes", bytes_}};
+  }
+
+ private:
+  /// When a frame is due, since the start.
+  std::int64_t DueNs(std::size_t frame) const {
+    if (options_.rate_hz > 0)
+      return static_cast<std::int64_t>(frame) * PeriodNanoseconds(options_.rate_hz);
+    // After its end a clip goes on at its start, a thirtieth of a second later.
+    const std::int64_t clip_ns = clip_.back().time_ns + PeriodNanoseconds(30);
+    const auto rounds = static_cast<std::int64_t>(frame / clip_.size());
+    const std::int64_t at_ns = rounds * clip_ns + clip_[frame % clip_.size()].time_ns;
+    return static_cast<std::int64_t>(static_cast<double>(at_ns) / options_.rate_scale);
+  }
+
+  bool IsOver() const {
+    if (options_.seconds > 0) return DueNs(frame_) > SecondsToNanoseconds(options_.seconds);
+    return frame_ == clip_.size();
+  }
+
+  void SendLater() {
+    if (IsOver()) {
+      signals_.cancel();
+      return;
+    }
+    next_.expires_at(began_ + std::chrono::nanoseconds(DueNs(frame_)));
+    next_.async_wait([this](const boost::system::error_code& failed) {
+      if (failed || stopped_) return;
+      Send();
+      ++frame_;
+      SendLater();
+    });
+  }
+
+  void Send() {
+    Skeleton skeleton = clip_[frame_ % clip_.size()].skeleton;
+    skeleton.sequence = static_cast<std::int64_t>(frame_);
+    skeleton.sent_ns =
+        options_.dialect == Dialect::kZillode ? clock::MonotonicNs() - began_ns_ : clock::WallNs();
+    for (skeleton.user = 1; skeleton.user <= options_.people; ++skeleton.user) {
+      for (const auto& packet : Encode(options_.dialect, options_.dialect_options, skeleton)) {
+        boost::system::error_code nobody_listens;  // Yet, or any more.
+        bytes_ += socket_.send(asio::buffer(packet), 0, nobody_listens);
+        ++packets_;
+      }
+    }
+  }
+
+  const std::vector<ClipFrame>& clip_;
+  const SenderOptions& options_;
+  asio::io_context io_{1};
+  asio::signal_set signals_;
+  asio::ip::udp::socket socket_;
+  asio::steady_timer next_;
+  std::chrono::steady_clock::time_point began_;
+  std::int64_t began_ns_ = 0;
+  std::size_t frame_ = 0;
+  std::uint64_t packets_ = 0, bytes_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+Result<nlohmann::ordered_json> SendClip(const std::vector<ClipFrame>& clip,
+                                        const SenderOptions& options) {
+  return Sender(clip, options).Run();
+}
+
+}  // namespace footing::skeleton

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clients/skeleton/tracking/joints.h"
+#include "common/base/result.h"
+
+namespace footing::skeleton {
+
+struct ClipFrame {
+  std::int64_t time_ns = 0;  ///< Since the first frame.
+  Skeleton skeleton;
+};
+
+/// A Kinect v2 recording as KinectReader of the LabanotationSuite writes it: a line a frame,
+/// `t_100ns,(x,y,z,state)*25`, metres in Kinect's frame, which is K; state 0 not tracked, 1
+/// inferred, 2 tracked become the confidences 0.1, 0.5 and 1. InvalidData names the line: a cell
+/// that is not a number, too few cells, a time that goes back, no frames, too many.
+Result<std::vector<ClipFrame>> ReadKinectClip(std::string_view text, const std::string& path);
+
+}  // namespace footing::skeleton

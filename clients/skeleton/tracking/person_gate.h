@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "clients/skeleton/tracking/bone_lengths.h"
+#include "clients/skeleton/tracking/joints.h"
+
+namespace footing::skeleton {
+
+/// What is wrong with all that comes from one person's skeleton.
+enum class Fault : std::uint8_t {
+  kNone,
+  kMillimetres,  ///< The bones are a thousand times too long.
+  kCentimetres,
+  kNormalised,  ///< They are as short as in normalised image coordinates.
+  kShort,       ///< They are half as long as a person's, and the head is above.
+  kScale,       ///< They are too long or too short, and no unit explains it.
+  kUpsideDown,  ///< The head is below the hips.
+  kSwapped,     ///< Knees and hands are behind the body, where the camera is: sides are swapped.
+  kTurned,      ///< They are behind it and away from the camera, which sees the back as a front.
+};
+
+/// One line for a person: what is seen and what to do. Empty for kNone.
+std::string Advice(Fault fault);
+
+/// Why a joint of a frame does not count.
+enum class Verdict : std::uint8_t { kTaken, kAbsent, kBone, kSpeed, kFault };
+
+/// A frame after the gate; joints that do not count are absent.
+struct Gated {
+  Skeleton skeleton;
+  std::array<Verdict, kJoints> verdicts{};
+  Fault fault = Fault::kNone;
+  std::size_t inferred = 0;  ///< Of the joints taken.
+};
+
+/// What of a person's skeleton can be true. Joints are dropped when a bone is more than a quarter
+/// off the person's own running median (2.5 to 8 % of Kinect frames have such a bone), or when they
+/// moved faster than 6 m/s, unless they stay there. Whole skeletons are dropped while their scale
+/// or their up is wrong, or while left and right do not fit knees and hands. A plain value.
+class PersonGate {
+ public:
+  static constexpr double kBoneTolerance = 0.25;
+  static constexpr double kFastestMps = 6;
+  static constexpr double kNoiseM = 0.06;       ///< Between two frames: 3 sd of 15 mm twice.
+  static constexpr int kMostRejected = 5;       ///< After that many a joint has moved indeed.
+  static constexpr double kTrackedFrom = 0.75;  ///< Confidence; below it a joint is inferred.
+  static constexpr double kUsedFrom = 0.25;     ///< Below it a joint is not tracked.
+
+  /// `time_ns`: of the exposure.
+  Gated Advance(const Skeleton& skeleton, std::int64_t time_ns);
+
+ private:
+  struct Last {
+    Eigen::Vector3d p_K_m = Eigen::Vector3d::Zero();
+    std::int64_t time_ns = 0;
+    int rejected = 0;
+    bool known = false;
+  };
+
+  Fault FaultOf(const Skeleton& skeleton);
+  void DropBones(Gated& gated) const;
+  void DropFast(Gated& gated, std::int64_t time_ns);
+
+  BoneLengths lengths_;
+  std::array<Last, kJoints> last_;
+  double up_ = 1;       // Running mean of the trunk's upward part, -1 to 1.
+  double front_m_ = 0;  // Running mean of how far knees and hands lie in front.
+  double away_ = 0;     // Running mean of the part of "ahead" that points away from the camera.
+  double weight_ = 0;   // Of these means, in frames.
+};
+
+}  // namespace footing::skeleton

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "clients/skeleton/tracking/osc.h"
+#include "common/base/result.h"
+#include "common/net/address.h"
+
+namespace footing::skeleton {
+
+struct WebOptions {
+  transport::Address listen;      ///< tcp, of this host only: browsers give it their webcam.
+  std::filesystem::path package;  ///< The folder of npm's @mediapipe/pose.
+  std::function<void(osc::Bytes packet)> on_packet;            ///< What a page sends.
+  std::function<void(const std::string& line)> on_state = {};  ///< What a page says of itself.
+};
+
+/// What pages have reported.
+struct WebCounts {
+  std::uint64_t pages = 0;    ///< That connected.
+  std::uint64_t frames = 0;   ///< Through the pose model, of the page that reported last,
+  std::uint64_t found = 0;    ///< and those with a person.
+  std::uint64_t packets = 0;  ///< Skeletons, of all.
+  std::uint64_t refused = 0;  ///< Requests and messages that are none.
+};
+
+/// Serves a page that runs a pose model on a webcam, the model's files, and the WebSocket
+/// /skeleton, on which the page sends skeletons (docs/skeleton.md). Pages of other origins are
+/// refused. Everything runs on the io_context's one thread.
+class WebServer {
+ public:
+  /// Failure when it cannot listen, or the address is not of this host.
+  static Result<std::unique_ptr<WebServer>> Open(boost::asio::io_context& io, WebOptions options);
+  ~WebServer();
+  WebServer(const WebServer&) = delete;
+  WebServer& operator=(const WebServer&) = delete;
+
+  const WebCounts& counts() const;
+  /// As bound.
+  const transport::Address& address() const;
+
+ private:
+  class Implementation;
+  explicit WebServer(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::skeleton

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "clients/study/report/event.h"
+
+namespace footing::study::records {
+
+/// The outcome of a trial that lost a device: it does not count.
+inline constexpr const char* kDeviceLost = "device_lost";
+/// Of a trial that a server, the lease or the recording has ended: it does not count.
+inline constexpr const char* kBrokenOff = "broken_off";
+/// Of a trial during which the program was interrupted or killed: it does not count.
+inline constexpr const char* kInterrupted = "interrupted";
+
+struct Failure {
+  std::uint64_t number = 0;  ///< The server's.
+  std::string kind;          ///< Name of a stream::FailureCause.
+  double trial_time_s = 0;
+  double distance_m = 0;
+  bool undone = false;
+};
+
+/// From the participant's motion to the frame that shows it: the stages of stream::ResponseTimes.
+struct StageTime {
+  std::string stage;
+  double ms = 0;
+};
+using Response = std::vector<StageTime>;
+
+/// One attempt at a trial.
+struct Trial {
+  std::string id;  ///< Of all participants no other has it.
+  std::string participant;
+  std::string phase;
+  std::string interface;
+  std::string kind;  ///< "straight" or "test_track".
+  std::string track;
+  std::string task;
+  std::size_t position = 0;  ///< Of the interface in the participant's order, from 1.
+  std::size_t attempt = 0;
+  std::int64_t started_wall_ns = 0;
+  /// "finished", "timed_out", "stopped", kDeviceLost, kBrokenOff, kInterrupted.
+  std::string outcome;
+  double time_s = 0;  ///< From the start line; including put-backs.
+  double distance_m = 0;
+  double heading_oscillation_rad = 0;  ///< Standard deviation of the heading error; NaN: unknown.
+  double anticipation_s = 0;  ///< Command before the line of the task; NaN: not done, or no task.
+  std::string recording;
+  bool synthetic = false;
+  std::vector<Failure> failures;
+  std::vector<Response> responses;
+
+  std::size_t Count(const std::string& kind) const;  ///< Without those undone.
+  std::size_t failure_count() const;
+  /// Time over failures; the whole time where there is none, as a lower bound.
+  double mean_time_to_failure_s() const;
+  double time_to_first_failure_s() const;  ///< NaN: none.
+};
+
+struct Rating {
+  std::string participant;
+  std::string interface;  ///< Empty: of the whole study.
+  std::string item;       ///< "exertion" for the exertion.
+  double value = 0;
+  bool synthetic = false;
+  bool at_end = false;  ///< Of the final survey.
+};
+
+struct Answer {
+  std::string participant;
+  std::string interface;
+  std::string question;
+  std::string text;
+  bool synthetic = false;
+  bool at_end = false;  ///< Of the final survey.
+};
+
+/// What the journal of one participant says of results. A repeated survey replaces the earlier one.
+struct Records {
+  std::string participant;
+  std::vector<std::string> interfaces;  ///< In their order.
+  bool finished = false;
+  bool withdrawn = false;
+  bool synthetic = false;
+  bool simulated_time = false;
+  std::map<std::string, double> active_s;  ///< Time in motion, by interface.
+  std::vector<Trial> trials;               ///< All attempts, in the order in which they began.
+  std::vector<Rating> ratings;
+  std::vector<Answer> answers;
+};
+
+/// Whether a trial with this outcome counts.
+bool EndedInOrder(const std::string& outcome);
+
+Records Collect(const std::vector<Event>& events);
+
+/// Of the attempt with that id, in the order in which they happened.
+std::vector<Failure> FailuresOf(const Records& records, const std::string& trial);
+/// The newest attempt that has a failure of that number; null: none.
+const Trial* WithFailure(const Records& records, std::uint64_t number);
+
+/// The attempts that count: the last one of each phase that ended by itself or by a
+/// person.
+std::vector<const Trial*> Counting(const Records& records);
+
+}  // namespace footing::study::records

@@ -1,0 +1,112 @@
+#include "clients/view/render/hud_layout.h"
+
+#include <algorithm>
+#include <array>
+
+namespace footing::render {
+namespace {
+
+// In units.
+constexpr float kReferenceWidth = 1280, kReferenceHeight = 720;
+constexpr float kLeastScale = 0.8f;  // Letters 10 pixels high.
+constexpr float kRoomyWidth = 1000;
+constexpr float kWindowEdge = 18, kNarrowEdge = 10;
+constexpr float kPanelGap = 8;
+constexpr float kLeastColumn = 260, kMostColumn = 300;
+constexpr float kColumnShare = 0.33f;
+constexpr float kLeastMiddle = 120;
+constexpr float kStampWidth = 240, kStampHeight = 28;
+
+/// Stacks panels from the top into a column; one that does not fit is left out. What is left over
+/// goes to the first panels first. `last_at_bottom`: the last one stands at the column's end.
+template <std::size_t N>
+std::array<std::optional<Box>, N> Stack(const std::array<PanelHeight, N>& needs, const Box& column,
+                                        bool last_at_bottom) {
+  std::array<float, N> heights{};
+  float left = column.height();
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    const float gap = left < column.height() ? kPanelGap : 0;
+    if (needs[i].full <= 0 || needs[i].least + gap > left) continue;
+    heights[i] = needs[i].least;
+    left -= needs[i].least + gap;
+  }
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    if (heights[i] <= 0) continue;
+    const float more = std::min(left, needs[i].full - needs[i].least);
+    heights[i] += more;
+    left -= more;
+  }
+  std::array<std::optional<Box>, N> boxes;
+  float y = column.low.y;
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    if (heights[i] <= 0) continue;
+    if (last_at_bottom && i + 1 == needs.size()) y = column.high.y - heights[i];
+    boxes[i] = Box{{column.low.x, y}, {column.high.x, y + heights[i]}};
+    y += heights[i] + kPanelGap;
+  }
+  return boxes;
+}
+
+Box Scaled(const Box& box, float scale) {
+  return {{box.low.x * scale, box.low.y * scale}, {box.high.x * scale, box.high.y * scale}};
+}
+
+std::optional<Box> Scaled(const std::optional<Box>& box, float scale) {
+  if (!box) return std::nullopt;
+  return Scaled(*box, scale);
+}
+
+}  // namespace
+
+float HudScale(ImVec2 size, float display_scale) {
+  const float fitting = std::min(size.x / kReferenceWidth, size.y / kReferenceHeight);
+  return std::max(fitting, kLeastScale * display_scale);
+}
+
+HudBoxes LayOut(ImVec2 size, float scale, const HudNeeds& needs) {
+  const ImVec2 units(size.x / scale, size.y / scale);
+  const float edge = units.x < kRoomyWidth ? kNarrowEdge : kWindowEdge;
+  const float inner = units.x - 2 * edge;
+  const float column = std::clamp(kColumnShare * inner, kLeastColumn, kMostColumn);
+  const bool one = inner >= column;
+  const bool two = inner >= 2 * (column + kPanelGap) + kLeastMiddle;
+  const float between = inner - 2 * (column + kPanelGap);
+  // Where the stamp does not fit between the columns it has a row of its own.
+  const bool own_row = !two || between < kStampWidth;
+  const float top = own_row ? edge + kStampHeight + kPanelGap : edge;
+  const float bottom = std::max(top, units.y - edge);
+
+  HudBoxes boxes;
+  const float left_end = edge + column, right_start = units.x - edge - column;
+  if (one) {
+    Box left{{edge, top}, {left_end, bottom}};
+    const bool camera = needs.camera.full > 0 && needs.camera.least <= left.height();
+    if (camera) left.high.y -= needs.camera.least + kPanelGap;
+    const auto stacked = Stack<2>({needs.character, needs.strips}, left, false);
+    if (camera) {
+      const Box& last = stacked[1] ? *stacked[1] : stacked[0].value_or(Box{left.low, left.low});
+      const float above = stacked[0] || stacked[1] ? last.high.y + kPanelGap : top;
+      boxes.camera = Scaled(
+          Box{{edge, std::max(above, bottom - needs.camera.full)}, {left_end, bottom}}, scale);
+    }
+    boxes.character = Scaled(stacked[0], scale);
+    boxes.strips = Scaled(stacked[1], scale);
+  }
+  if (two) {
+    const auto stacked = Stack<3>({needs.devices, needs.interface, needs.boards},
+                                  {{right_start, top}, {units.x - edge, bottom}}, true);
+    boxes.devices = Scaled(stacked[0], scale);
+    boxes.interface = Scaled(stacked[1], scale);
+    boxes.boards = Scaled(stacked[2], scale);
+  }
+  const bool left_free = !boxes.character && !boxes.strips && !boxes.camera;
+  const bool right_free = !boxes.devices && !boxes.interface && !boxes.boards;
+  const float from = left_free ? edge : left_end + kPanelGap;
+  const float to = std::max(from, right_free ? units.x - edge : right_start - kPanelGap);
+  boxes.stamp = own_row ? Scaled({{edge, edge}, {units.x - edge, edge + kStampHeight}}, scale)
+                        : Scaled({{from, edge}, {to, edge + kStampHeight}}, scale);
+  boxes.middle = Scaled({{from, edge + kStampHeight + kPanelGap}, {to, bottom}}, scale);
+  return boxes;
+}
+
+}  // namespace footing::render

@@ -1,0 +1,182 @@
+#include "clients/view/render/strip_panel.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "clients/view/render/strip_plot.h"
+#include "clients/view/scene/interface_text.h"
+#include "clients/view/scene/words.h"
+#include "common/base/units.h"
+
+namespace footing::render {
+namespace {
+
+constexpr std::size_t kMaxStripDevices = 4;
+constexpr float kStripMargins = 28;
+constexpr float kStripDeviceHeight = 190, kLeastStripDeviceHeight = 66;
+constexpr float kStripHeadingHeight = 23;
+constexpr float kStripPhaseHeight = 34;
+constexpr float kStripGap = 10;
+constexpr float kLeastRowHeight = 26;
+
+/// Shades the time in which the controller moves.
+void ShadeMoving(const Paint& p, const Box& box, const scene::Strip& moving, std::int64_t now_ns) {
+  const auto& points = moving.points();
+  for (std::size_t i = 0; i < points.size();) {
+    std::size_t end = i;
+    while (end + 1 < points.size() && points[end + 1].value == points[i].value) ++end;
+    const std::size_t until = std::min(end + 1, points.size() - 1);
+    if (points[i].value > 0.5f) {
+      p.list->AddRectFilled({PlotX(p, box, points[i].time_ns, now_ns), box.low.y},
+                            {PlotX(p, box, points[until].time_ns, now_ns), box.high.y},
+                            Faded(colour::kGood, 0.10f));
+    }
+    i = end + 1;
+  }
+}
+
+std::string NewestOf(const scene::Strip& strip, std::int64_t now_ns, int decimals, double factor,
+                     const char* unit) {
+  if (strip.points().empty()) return "-";
+  const scene::Strip::Point& newest = strip.points().back();
+  if (now_ns - newest.time_ns > scene::kCurrentNs) return "-";
+  return scene::Fixed(factor * static_cast<double>(newest.value), decimals) + unit;
+}
+
+/// Roll and pitch, or one dash where either is unknown.
+std::string InclinationOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
+  const double degrees = RadiansToDegrees(1);
+  const std::string roll = NewestOf(d.roll_rad, now_ns, 0, degrees, "\xc2\xb0");
+  const std::string pitch = NewestOf(d.pitch_rad, now_ns, 0, degrees, "\xc2\xb0");
+  return roll == "-" || pitch == "-" ? "-" : roll + ", " + pitch;
+}
+
+/// The least of a few ranges that shows the strip whole; the last is the Wiimote's 3.6 g on all
+/// three axes at once, 9.81 * 3.6 * sqrt(3) m/s2.
+float RangeOf(const scene::Strip& magnitude) {
+  float largest = 0;
+  for (const scene::Strip::Point& point : magnitude.points()) {
+    largest = std::max(largest, point.value);
+  }
+  for (const float range : {22.0f, 40.0f}) {
+    if (largest <= range) return range;
+  }
+  return 62;
+}
+
+std::vector<Plot> PlotsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
+  const float range_mps2 = RangeOf(d.magnitude_mps2);
+  return {
+      {"acceleration",
+       NewestOf(d.magnitude_mps2, now_ns, 1, 1, " m/s\xc2\xb2"),
+       -range_mps2,
+       range_mps2,
+       1,
+       {{&d.filtered_x_mps2, Faded(colour::kAccent, 0.85f), "x"},
+        {&d.filtered_y_mps2, Faded(colour::kGood, 0.85f), "y"},
+        {&d.filtered_z_mps2, Faded(colour::kThird, 0.85f), "z"},
+        {&d.magnitude_mps2, colour::kText, "norm", 1.0f}},
+       2.1f},
+      {"frequency",
+       NewestOf(d.frequency_hz, now_ns, 2, 1, " Hz"),
+       0,
+       5,
+       1,
+       {{&d.frequency_hz, colour::kSecond, "", 2.0f}}},
+      {"amplitude",
+       NewestOf(d.amplitude_mps2, now_ns, 1, 1, " m/s\xc2\xb2"),
+       0,
+       30,
+       1,
+       {{&d.amplitude_mps2, colour::kGood, "", 2.0f}}},
+      {"",
+       InclinationOf(d, now_ns),
+       static_cast<float>(-kPi / 2),
+       static_cast<float>(kPi / 2),
+       RadiansToDegrees(1),
+       {{&d.roll_rad, colour::kAccent, "roll", 2.0f},
+        {&d.pitch_rad, colour::kThird, "pitch", 2.0f}}},
+  };
+}
+
+void DrawDeviceStrips(const Paint& p, const Box& box, const scene::DeviceStrips& device,
+                      std::int64_t now_ns) {
+  const float s = p.scale;
+  const std::string role = scene::RoleText(device.role);
+  const float width = p.Write(p.fonts.strong, box.low, colour::kText, role);
+  const bool moving = !device.moving.points().empty() && device.moving.points().back().value > 0;
+  p.Label({box.low.x + width + 8 * s, box.low.y}, moving ? colour::kGood : colour::kGroove,
+          moving ? IM_COL32(10, 30, 16, 255) : colour::kFaint, moving ? "moving" : "still");
+  if (device.simulated) {
+    p.WriteRight(p.fonts.small, {box.high.x, box.low.y + 2 * s}, colour::kSecond, "SIMULATED");
+  }
+  const Box plots_box{{box.low.x, box.low.y + kStripHeadingHeight * s}, box.high};
+  ShadeMoving(p, plots_box, device.moving, now_ns);
+  std::vector<Plot> plots = PlotsOf(device, now_ns);
+  // Where there is little space, the first plots say most.
+  while (plots.size() > 1 &&
+         plots_box.height() < kLeastRowHeight * s * (1 + static_cast<float>(plots.size()))) {
+    plots.pop_back();
+  }
+  DrawPlots(p, plots_box, plots, now_ns);
+}
+
+void DrawPhase(const Paint& p, const Box& box, const scene::Strip& phase, std::int64_t now_ns) {
+  const double degrees = RadiansToDegrees(1);
+  DrawPlots(p, box,
+            {{"phase, right minus left",
+              NewestOf(phase, now_ns, 0, degrees, "\xc2\xb0"),
+              static_cast<float>(-kPi),
+              static_cast<float>(kPi),
+              degrees,
+              {{&phase, colour::kSecond, "", 2.0f}}}},
+            now_ns);
+}
+
+float PhaseSpace(const scene::StripSet& strips) {
+  return strips.phases_rad.empty() ? 0 : kStripPhaseHeight + kStripGap;
+}
+
+/// Height of so many controllers with all that is around them.
+float StripsHeight(const scene::StripSet& strips, std::size_t devices, float device_height) {
+  const auto count = static_cast<float>(devices);
+  return kStripMargins + kTimeAxisHeight + PhaseSpace(strips) +
+         count * (device_height + kStripGap) - kStripGap;
+}
+
+}  // namespace
+
+PanelHeight StripPanelHeight(const scene::StripSet& strips) {
+  const std::size_t devices = std::min(strips.devices.size(), kMaxStripDevices);
+  if (devices == 0) return {};
+  return {StripsHeight(strips, 1, kLeastStripDeviceHeight),
+          StripsHeight(strips, devices, kStripDeviceHeight)};
+}
+
+void DrawStripPanel(const Paint& p, const Box& box, const scene::StripSet& strips,
+                    std::int64_t now_ns) {
+  const float s = p.scale;
+  std::size_t devices = std::min(strips.devices.size(), kMaxStripDevices);
+  while (devices > 1 && StripsHeight(strips, devices, kLeastStripDeviceHeight) * s > box.height()) {
+    --devices;
+  }
+  const std::int64_t shown_ns = scene::ShownTime(strips.newest_ns, now_ns);
+  const Box in = p.Panel(box);
+  const float axis = in.high.y - (kTimeAxisHeight - 3) * s;
+  DrawTimeAxis(p, {{in.low.x, axis}, in.high});
+  const float bottom = in.high.y - kTimeAxisHeight * s;
+  const float space = bottom - in.low.y - PhaseSpace(strips) * s;
+  const float height = (space + kStripGap * s) / static_cast<float>(devices) - kStripGap * s;
+  float y = in.low.y;
+  std::size_t drawn = 0;
+  for (const auto& [key, device] : strips.devices) {
+    if (drawn++ == devices) break;
+    DrawDeviceStrips(p, {{in.low.x, y}, {in.high.x, y + height}}, device, shown_ns);
+    y += height + kStripGap * s;
+  }
+  if (strips.phases_rad.empty()) return;
+  DrawPhase(p, {{in.low.x, y}, {in.high.x, bottom}}, strips.phases_rad.begin()->second, shown_ns);
+}
+
+}  // namespace footing::render

@@ -1,0 +1,258 @@
+#include "common/net/server.h"
+
+#include <google/protobuf/stubs/logging.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "common/net/context.h"
+#include "common/net/identity.h"
+#include "common/net/descriptor_table.h"
+#include "common/net/exposure.h"
+#include "common/net/listener.h"
+#include "common/net/session.h"
+#include "common/net/session_table.h"
+#include "common/base/units.h"
+
+namespace footing::transport {
+namespace {
+
+/// Beside those of the sessions: devices, files, listeners.
+constexpr std::int64_t kOtherDescriptors = 256;
+
+std::uint64_t NewEpoch() {
+  std::random_device random;
+  const std::uint64_t high = random();
+  const std::uint64_t epoch = (high << 32) | random();
+  return epoch == 0 ? 1 : epoch;
+}
+
+}  // namespace
+
+class Server::Implementation {
+ public:
+  Implementation(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
+      : io_(io), shared_(io.get_executor(), std::move(options), std::move(handlers)) {
+    shared_.epoch = shared_.options.epoch != 0 ? shared_.options.epoch : NewEpoch();
+    shared_.publication.set_epoch(shared_.epoch);
+    // Protobuf would write a line to standard error for every message that a client got wrong.
+    google::protobuf::SetLogHandler(nullptr);
+    shared_.on_sessions_command = [this](const SessionInfo& who, const v1::Command& command) {
+      return sessions_.CarryOut(who, command);
+    };
+  }
+
+  Result<void> Listen(const Address& address) {
+    ReserveForSessions();
+    ListenSecurity security;
+    security.insecure_lan = shared_.options.insecure_lan && shared_.options.has_token();
+    if (shared_.options.identity_file) {
+      security.tls = [this, address] { return TlsContext(address); };
+    }
+    auto listener = Listener::Open(
+        io_, address, [this](Socket socket) { OnAccept(std::move(socket)); }, security);
+    if (!listener) return listener.error();
+    listeners_.push_back(std::move(*listener));
+    return {};
+  }
+
+  Address ListeningOn(std::size_t index) const {
+    FOOTING_CHECK(index < listeners_.size());
+    return listeners_[index]->address();
+  }
+
+  std::uint64_t Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
+    const TickNumber number = shared_.publication.Next(host_ns);
+    Relay(number, channels);
+    return number.sequence;
+  }
+
+  void BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained) {
+    shared_.publication.BeginAt(number, retained);
+  }
+
+  void Relay(const TickNumber& number, const std::vector<ChannelBytes>& channels) {
+    const std::uint64_t left_out = shared_.publication.channels_left_out();
+    const SharedTick tick = shared_.publication.Publish(number, channels);
+    if (shared_.publication.channels_left_out() != left_out) SayLeftOut();
+    // Whoever floods the server gets its ticks behind all others.
+    const std::int64_t now_ns = shared_.NowNs();
+    for (const bool slowed : {false, true}) {
+      for (const auto& session : sessions_.all()) {
+        if (session->SlowedLately(now_ns) == slowed) session->Offer(tick);
+      }
+    }
+    shared_.publication.Keep(tick);
+  }
+
+  void Answer(std::uint64_t number, const v1::CommandResult& result) {
+    for (const auto& session : sessions_.all()) {
+      if (session->info().session == number) return session->Answer(result);
+    }
+  }
+
+  void NoteLateTicks(std::uint64_t count) {
+    shared_.statistics.late_ticks += count;
+    shared_.publication.LeaveOut(count);
+    if (!late_lines_.Take(shared_.NowNs())) return;
+    const std::uint64_t all = shared_.statistics.late_ticks;
+    const std::string line =
+        shared_.options.server_id + " is overloaded: " + std::to_string(all) +
+        " ticks skipped since start, sessions: " + std::to_string(sessions_.all().size());
+    if (shared_.handlers.on_overload) shared_.handlers.on_overload({line});
+    for (const auto& session : sessions_.all()) {
+      session->Notify(v1::Notice::KIND_TICKS_LATE, line, all);
+    }
+  }
+
+  std::string fingerprint() const { return identity_ ? identity_->fingerprint() : ""; }
+  std::uint64_t epoch() const { return shared_.epoch; }
+
+  ServerStatistics statistics() const {
+    ServerStatistics statistics = shared_.statistics;
+    statistics.sessions = static_cast<std::size_t>(
+        std::count_if(sessions_.all().begin(), sessions_.all().end(),
+                      [](const auto& session) { return session->welcomed(); }));
+    statistics.ring_bytes = shared_.publication.ring().bytes();
+    statistics.channels_left_out = shared_.publication.channels_left_out();
+    return statistics;
+  }
+
+  std::vector<stream::SessionStats> sessions() const {
+    std::vector<stream::SessionStats> all;
+    for (const auto& session : sessions_.all()) {
+      if (session->welcomed()) all.push_back(session->Stats());
+    }
+    return all;
+  }
+
+  void Stop(const std::string& reason) {
+    listeners_.clear();
+    for (const auto& session : sessions_.all()) session->End(reason);
+  }
+
+  void Drain(const std::string& reason, std::function<void()> done) {
+    listeners_.clear();
+    drained_ = std::move(done);
+    for (const auto& session : sessions_.all()) session->Drain(reason);
+    if (sessions_.all().empty()) Drained();
+  }
+
+  void SetLimits(const SessionLimits& limits) {
+    shared_.options.sessions = limits;
+    ReserveForSessions();
+  }
+
+  std::size_t SetAccess(const AccessKeys& keys) { return sessions_.SetKeys(keys); }
+
+  const ServerOptions& options() const { return shared_.options; }
+
+ private:
+  void ReserveForSessions() const {
+    const SessionLimits& limits = shared_.options.sessions;
+    ReserveDescriptors(static_cast<std::size_t>(limits.max_sessions + limits.admin_places +
+                                                SessionTable::kMostLingering + kOtherDescriptors));
+  }
+
+  Result<tls::Context> TlsContext(const Address& address) {
+    const ServerOptions& options = shared_.options;
+    if (const auto checked = CheckKeys(address, options.has_keys()); !checked) {
+      return checked.error();
+    }
+    if (!identity_) {
+      auto identity = tls::Identity::LoadOrMake(*options.identity_file, "Footing");
+      if (!identity) return identity.error();
+      identity_ = std::move(identity).value();
+    }
+    return tls::Context::ForServer(*identity_);
+  }
+
+  void SayLeftOut() {
+    const auto& channels = shared_.options.channels;
+    const auto channel = std::find_if(channels.begin(), channels.end(), [this](const Channel& one) {
+      return one.field == shared_.publication.left_out_field();
+    });
+    if (channel == channels.end() || !shared_.handlers.on_overload) return;
+    if (!left_out_lines_.Take(shared_.NowNs())) return;
+    shared_.handlers.on_overload(
+        {"channel " + channel->name + " was left out of a tick, which has at most " +
+             std::to_string(shared_.options.max_message_out_bytes) + " bytes (" +
+             std::to_string(shared_.publication.channels_left_out()) + " since start)",
+         0, channel->name});
+  }
+
+  void OnAccept(Socket socket) {
+    ++shared_.statistics.accepted;
+    const auto session = std::make_shared<Session>(std::move(socket), ++last_number_, shared_,
+                                                   [this](Session& ended) { OnEnd(ended); });
+    const std::string full = sessions_.WhyFull(*session);
+    // Those that are being refused linger for a moment; there is an end to them too.
+    if (!full.empty() && sessions_.lingering() >= SessionTable::kMostLingering) return;
+    sessions_.Add(session);
+    if (full.empty()) return session->Start();
+    session->StartRefused(
+        v1::Refused::REASON_TOO_MANY_SESSIONS,
+        shared_.options.server_id + " has " + full + "; end one or try again later");
+  }
+
+  void Drained() {
+    if (drained_) boost::asio::post(io_, std::exchange(drained_, nullptr));
+  }
+
+  void OnEnd(Session& ended) {
+    const std::shared_ptr<Session> session = sessions_.Remove(ended);
+    boost::asio::post(io_, [session] {});  // It is still being called: let it go later.
+    if (sessions_.all().empty()) Drained();
+    if (!session->welcomed()) return;
+    Leave(session->admitted(), shared_.admission);
+    if (shared_.handlers.on_session_end) shared_.handlers.on_session_end(session->info());
+  }
+
+  boost::asio::io_context& io_;
+  Shared shared_;
+  std::optional<tls::Identity> identity_;
+  std::vector<std::unique_ptr<Listener>> listeners_;
+  SessionTable sessions_{shared_};
+  std::uint64_t last_number_ = 0;
+  TokenBucket late_lines_{0.1, 1};
+  TokenBucket left_out_lines_{0.1, 1};
+  std::function<void()> drained_;  ///< While draining.
+};
+
+Server::Server(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
+    : implementation_(
+          std::make_shared<Implementation>(io, std::move(options), std::move(handlers))) {}
+Server::~Server() = default;
+
+Result<void> Server::Listen(const Address& address) { return implementation_->Listen(address); }
+Address Server::ListeningOn(std::size_t index) const { return implementation_->ListeningOn(index); }
+std::uint64_t Server::Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
+  return implementation_->Publish(host_ns, channels);
+}
+void Server::BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained) {
+  implementation_->BeginAt(number, retained);
+}
+void Server::Relay(const TickNumber& number, const std::vector<ChannelBytes>& channels) {
+  implementation_->Relay(number, channels);
+}
+void Server::Answer(std::uint64_t session, const v1::CommandResult& result) {
+  implementation_->Answer(session, result);
+}
+void Server::NoteLateTicks(std::uint64_t count) { implementation_->NoteLateTicks(count); }
+std::string Server::fingerprint() const { return implementation_->fingerprint(); }
+std::uint64_t Server::epoch() const { return implementation_->epoch(); }
+ServerStatistics Server::statistics() const { return implementation_->statistics(); }
+std::vector<stream::SessionStats> Server::sessions() const { return implementation_->sessions(); }
+void Server::Stop(const std::string& reason) { implementation_->Stop(reason); }
+void Server::Drain(const std::string& reason, std::function<void()> done) {
+  implementation_->Drain(reason, std::move(done));
+}
+void Server::SetLimits(const SessionLimits& limits) { implementation_->SetLimits(limits); }
+std::size_t Server::SetAccess(const AccessKeys& keys) { return implementation_->SetAccess(keys); }
+const ServerOptions& Server::options() const { return implementation_->options(); }
+
+}  // namespace footing::transport

@@ -1,0 +1,197 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "common/runtime/timer.h"
+#include "common/net/admission.h"
+#include "common/net/answers.h"
+#include "common/net/decimator.h"
+#include "common/net/framed_connection.h"
+#include "common/net/handshake.h"
+#include "common/net/peer.h"
+#include "common/net/publication.h"
+#include "common/net/server.h"
+#include "common/net/session_record.h"
+#include "common/net/tick_queue.h"
+#include "common/net/token_bucket.h"
+#include "common/net/turn_queue.h"
+
+namespace footing::transport {
+
+inline constexpr TurnPace kReplayPace = {
+    .share = 0.2, .longest_rest_ns = 10'000'000, .rests_when_empty = true};
+
+/// What all sessions of one server share.
+struct Shared {
+  Shared(const boost::asio::any_io_executor& executor, ServerOptions with, ServerHandlers and_with)
+      : options(std::move(with)),
+        handlers(std::move(and_with)),
+        publication(options),
+        admission{TokenGuard(options.token, options.view_token)} {
+    loop.turns = std::make_shared<TurnQueue>(executor);
+    replays = std::make_shared<TurnQueue>(executor, kReplayPace);
+  }
+  ServerOptions options;
+  ServerHandlers handlers;
+  Publication publication;
+  AdmissionState admission;
+  ServerStatistics statistics;
+  std::uint64_t epoch = 0;
+  SharedLoop loop;
+  /// What goes out of the ring, to all sessions together: a fifth of the loop's time.
+  std::shared_ptr<TurnQueue> replays;
+  std::int64_t NowNs() const;
+  /// Logs the line, unless another was logged within the last 10 s.
+  void SayOverload(const OverloadLine& line);
+  TokenBucket overload_lines{0.1, 1};
+  /// The same for who is kept out, for each kind of it; the line says how many there were of all.
+  void SayDenied(const std::string& host, Lack lack, const std::string& why);
+  std::map<Lack, TokenBucket> denied_lines;
+  /// And for each kind of refusal; the line says how many there were of all kinds.
+  void SayRefused(v1::Refused::Reason reason, const Peer& peer, const std::string& why);
+  std::map<v1::Refused::Reason, TokenBucket> refused_lines;
+  /// And for sessions that are ended since their client sent what it must not.
+  TokenBucket ended_lines{0.1, 1};
+  /// Carries out what concerns other sessions: list_sessions and end_sessions.
+  std::function<v1::CommandResult(const SessionInfo&, const v1::Command&)> on_sessions_command;
+};
+
+/// One client's connection on the server's side, from Hello to Goodbye.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  /// `on_end` is called once, from the io loop. Held by a shared_ptr, which its timer asks about.
+  Session(Socket socket, std::uint64_t number, Shared& shared,
+          std::function<void(Session&)> on_end);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  void Start();
+  /// Answers with Refused and ends, whatever the client says.
+  void StartRefused(v1::Refused::Reason reason, const std::string& message);
+
+  /// A tick has just been published.
+  void Offer(const SharedTick& tick);
+
+  /// Answers a command that was left open. `remember`: for a repeated id; not what is long and
+  /// does no harm when it is asked for again.
+  void Answer(const v1::CommandResult& result, bool remember = true);
+
+  /// Something slows this session, or all of them.
+  void Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count);
+
+  /// Sends what waits for the client, then says goodbye and ends.
+  void Drain(const std::string& reason);
+
+  /// Says goodbye and ends.
+  void End(const std::string& reason);
+
+  /// How it fares, for the channel `stats`.
+  stream::SessionStats Stats() const;
+  /// The same with where it comes from and why it may, for an administrator.
+  v1::ConnectedSession Describe() const;
+
+  const SessionInfo& info() const { return info_; }
+  const Peer& peer() const { return peer_; }
+  bool secured() const { return connection_.secured(); }
+  /// Once it is welcomed.
+  const Admitted& admitted() const { return admitted_; }
+  /// Its token is wrong, and the answer waits: it takes a place until then.
+  bool guessing() const { return phase_ == Phase::kGuessed; }
+  /// The answer at once, for somebody else needs the place.
+  void AnswerGuess();
+  /// Has not said who it is, and somebody else needs its place: refuses it with this message, or
+  /// answers its guess.
+  void GiveWay(const std::string& message);
+  /// It was refused, and lingers until the client has seen why.
+  bool refused() const { return phase_ == Phase::kRefused; }
+  /// It waits for its budget, or did within the last second.
+  bool SlowedLately(std::int64_t now_ns) const;
+  bool welcomed() const { return phase_ == Phase::kWelcomed || phase_ == Phase::kSubscribed; }
+  /// It is welcomed, and nobody has ended it yet.
+  bool live() const { return welcomed() && connection_.open(); }
+
+ private:
+  enum class Phase { kHello, kGuessed, kWelcomed, kSubscribed, kRefused };
+  struct Range {
+    std::uint64_t next = 0;
+    std::uint64_t last = 0;
+  };
+  /// What is to come out of the ring, a few ticks whenever it is this session's turn.
+  struct Replay {
+    /// While not 0 live ticks come out of the ring, from this sequence on, until it is caught up.
+    std::uint64_t catch_up = 0;
+    std::deque<Range> refills;
+    int allowance = 0;  ///< Ticks that may still go out in this turn.
+    bool in_line = false;
+
+    bool wanted() const { return catch_up != 0 || !refills.empty(); }
+  };
+
+  void OnFrame(std::string_view payload);
+  void OnSlowed(double wait_s);
+  void OnHello(const v1::Hello& hello);
+  void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
+  void OnSubscribe(const v1::Subscribe& wish);
+  void OnRefill(const v1::Refill& wish);
+  void SayNothingToRefill(const v1::Refill& wish);
+  void OnPing(const v1::Ping& ping, std::int64_t arrived_ns);
+  void OnCommand(const v1::Command& command, std::int64_t arrived_ns);
+  std::optional<v1::CommandResult> Carry(const v1::Command& command, std::int64_t arrived_ns);
+
+  std::uint64_t FirstSequence(const v1::Subscribe& wish) const;
+  void SendSnapshot(std::uint64_t sequence);
+  void SendGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason);
+  /// A full queue of answers ends the session: it takes nothing that it asked for.
+  void Send(const v1::Envelope& message) { SendPayload(message.SerializeAsString()); }
+  void SendPayload(std::string_view payload);
+
+  void EndLater();
+  void Fill(WriteBatch& batch);
+  bool FillLive(WriteBatch& batch);
+  bool FillFromRing(WriteBatch& batch);
+  void JoinReplays();
+  bool FillCatchUp(WriteBatch& batch);
+  bool FillRefill(WriteBatch& batch);
+  void AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason, WriteBatch& batch);
+  void AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch);
+  bool Takes(const Tick& tick);
+  TickHead Head(bool refilled) const;
+
+  void Refused(v1::Refused::Reason reason, const std::string& message);
+  void BadMessage(const std::string& why);
+  void SayEnded(const std::string& why);
+  void ArmTimer(double seconds);
+  void OnTimer();
+  void GrantTime();
+
+  Shared& shared_;
+  SessionInfo info_;
+  Phase phase_ = Phase::kHello;
+  Peer peer_;
+  Admitted admitted_;
+  std::string guess_answer_;  ///< While it is guessing.
+  std::function<void(Session&)> on_end_;
+  FramedConnection connection_;
+  timer::Timer timer_;
+  std::int64_t heard_ns_ = 0;
+  const double messages_per_s_;  ///< What it may send: its own, when a reload changes the limit.
+  SessionRecord record_;
+  TokenBucket slowed_notices_{1, 1};
+  Answers answers_;
+  std::set<std::uint64_t> open_commands_;  ///< Being carried out; their answers come later.
+
+  Subscription subscription_;
+  TickQueue queue_;
+  std::optional<Decimator> decimator_;
+  Replay replay_;
+};
+
+}  // namespace footing::transport

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "common/runtime/config.h"
+#include "common/net/input_pace.h"
+#include "common/net/peer.h"
+
+namespace footing::transport {
+
+/// How many sessions a server has at once, and what each may send: settings of both servers.
+///
+/// Administrators (the server's own user and root, on the Unix socket) have places of their own
+/// beyond `max_sessions`, half of which only root may take: no crowd of others locks them out. One
+/// address, one certificate, and all viewers together leave places to others. A connection is
+/// looked at twice: when it comes (WhyNoPlace), and when its Hello has said who it is
+/// (PlacesTaken).
+struct SessionLimits {
+  std::int64_t max_sessions = 256;
+  /// Of one user; all sessions over TCP count as one user's, since nobody knows whose they are.
+  std::int64_t max_sessions_per_user = 224;
+  /// Over TLS, of one host, before they are welcomed: who has no token cannot take all places.
+  std::int64_t max_entering_per_host = 64;
+  /// Over TCP and TLS, of one address: its sessions with the roles view and log. Those with the
+  /// role control are counted apart, up to half of max_control_sessions.
+  std::int64_t max_sessions_per_host = 64;
+  std::int64_t max_sessions_per_certificate = 16;  ///< The same for one client certificate.
+  std::int64_t admin_places = 16;
+  /// Of max_sessions, and of the places over TCP and TLS, those that sessions with the roles view
+  /// and log leave free; at most a quarter of either.
+  std::int64_t control_places = 16;
+  std::int64_t max_log_sessions = 64;      ///< With the role log, administrators not counted.
+  std::int64_t max_control_sessions = 32;  ///< With the role control, likewise.
+  /// What one session may send, on the average and at once after a pause; a Subscribe counts as 20,
+  /// a Command as 2. A session that sends more is slowed and informed.
+  double session_messages_per_s = 100;
+  double session_kilobytes_per_s = 1024;
+
+  void Bind(config::Binder& binder);
+  InputBudget Input() const;
+};
+
+/// The connections that there are when another one comes, those being refused not counted.
+struct SessionCounts {
+  std::int64_t all = 0;
+  std::int64_t of_user = 0;  ///< Of the user that comes now.
+  /// Over TLS from the host that comes now, and not welcomed yet.
+  std::int64_t entering_of_host = 0;
+};
+
+/// Why there is not a place for one more connection of this peer; empty when there is. It has not
+/// said yet who it is.
+std::string WhyNoPlace(const SessionLimits& limits, const Peer& peer, uid_t own_user,
+                       const SessionCounts& taken);
+
+/// What a session that has said who it is counts for.
+struct Claim {
+  v1::Role role = v1::ROLE_VIEW;
+  bool remote = false;           ///< Over TCP or TLS.
+  std::string host = {};         ///< The address that it comes from; empty on a Unix socket.
+  std::string certificate = {};  ///< By which it came in; empty: by something else.
+};
+
+/// The welcomed sessions, administrators not counted. A plain value.
+class PlacesTaken {
+ public:
+  /// Why there is not a place for one more; empty when there is.
+  std::string WhyNotOneMore(const SessionLimits& limits, const Claim& claim) const;
+  void Add(const Claim& claim) { Count(claim, 1); }
+  void Remove(const Claim& claim) { Count(claim, -1); }
+
+  std::int64_t with_role(v1::Role role) const;
+  bool empty() const { return with_role_.empty() && of_.empty(); }
+
+ private:
+  /// Sessions of a host or a certificate: the role control apart from the others.
+  struct Sessions {
+    std::int64_t ordinary = 0;
+    std::int64_t control = 0;
+  };
+
+  void Count(const Claim& claim, std::int64_t one);
+  std::string WhyOneHasTooMany(const std::string& key, std::int64_t most,
+                               const SessionLimits& limits, const Claim& claim,
+                               const std::string& whose) const;
+
+  std::map<v1::Role, std::int64_t> with_role_;
+  std::int64_t ordinary_remote_ = 0;
+  std::map<std::string, Sessions> of_;  ///< By host, and by certificate: the two differ in form.
+};
+
+}  // namespace footing::transport

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/recording/tables.h"
+#include "common/recording/recorded_session.h"
+#include "common/base/result.h"
+
+namespace footing::bids {
+
+/// What of a recording becomes a run of a data set.
+struct Choice {
+  std::string trial;  ///< The frames of this trial, and from its first one on all samples and
+                      ///< events; empty: everything.
+  std::set<std::uint64_t> undone;  ///< Failures that do not count.
+  bool with_role = false;          ///< Only devices that have a role.
+};
+
+struct RecordedMotion {
+  std::vector<MotionTable> tables;  ///< Of footing-sim, then one for each device that sent samples.
+  std::vector<Event> events;        ///< In order for each server's start.
+  std::string config;  ///< The last EffectiveConfig of the recording; empty: it has none.
+};
+
+/// A recording as tables. Time counts from the first frame of the trial, else from the recording's
+/// first tick, in seconds on the wall clock of the recorder's host, for all servers. InvalidData
+/// when no frame is of the trial.
+Result<RecordedMotion> ReadMotion(const recording::RecordedSession& session, const Choice& choice);
+
+}  // namespace footing::bids

@@ -1,0 +1,242 @@
+#include "common/runtime/config.h"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "common/runtime/data_file.h"
+#include "common/runtime/lines_of_keys.h"
+#include "common/base/json_text.h"
+#include "common/base/lines.h"
+#include "common/base/utf8.h"
+
+namespace footing::config {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string Range(const std::string& min, const std::string& max) {
+  return "from " + min + " to " + max;
+}
+
+std::string NumberText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+void Binder::Number(const std::string& key, double& value, double min, double max,
+                    const std::string& documentation) {
+  auto assign = [&value, min, max](const Json& json) {
+    if (!json.is_number()) return false;
+    const double number = json.get<double>();
+    if (!(number >= min && number <= max)) return false;
+    value = number;
+    return true;
+  };
+  entries_.push_back({key, "a number " + Range(NumberText(min), NumberText(max)), documentation,
+                      assign, [&value] { return Json(value); }});
+}
+
+void Binder::Integer(const std::string& key, std::int64_t& value, std::int64_t min,
+                     std::int64_t max, const std::string& documentation) {
+  auto assign = [&value, min, max](const Json& json) {
+    if (!json.is_number_integer()) return false;
+    const auto number = json.get<std::int64_t>();
+    if (number < min || number > max) return false;
+    value = number;
+    return true;
+  };
+  entries_.push_back({key, "a whole number " + Range(std::to_string(min), std::to_string(max)),
+                      documentation, assign, [&value] { return Json(value); }});
+}
+
+void Binder::Flag(const std::string& key, bool& value, const std::string& documentation) {
+  auto assign = [&value](const Json& json) {
+    if (!json.is_boolean()) return false;
+    value = json.get<bool>();
+    return true;
+  };
+  entries_.push_back(
+      {key, "true or false", documentation, assign, [&value] { return Json(value); }});
+}
+
+void Binder::Text(const std::string& key, std::string& value, const std::string& documentation) {
+  auto assign = [&value](const Json& json) {
+    if (!json.is_string()) return false;
+    value = json.get<std::string>();
+    return true;
+  };
+  entries_.push_back(
+      {key, "a text", documentation, assign, [&value] { return Json(value); }, true});
+}
+
+void Binder::TextList(const std::string& key, std::vector<std::string>& value,
+                      const std::string& documentation) {
+  auto assign = [&value](const Json& json) {
+    if (!json.is_array()) return false;
+    std::vector<std::string> list;
+    for (const Json& item : json) {
+      if (!item.is_string()) return false;
+      list.push_back(item.get<std::string>());
+    }
+    value = std::move(list);
+    return true;
+  };
+  entries_.push_back(
+      {key, "a list of strings", documentation, assign, [&value] { return Json(value); }});
+}
+
+void Binder::TextMap(const std::string& key, std::map<std::string, std::string>& value,
+                     const std::string& documentation,
+                     std::function<std::string(const std::string&)> check) {
+  auto why = [check = std::move(check)](const Json& json) -> std::string {
+    if (!json.is_object()) return "";
+    for (const auto& [name, item] : json.items()) {
+      const std::string problem = item.is_string() ? check(item.get<std::string>()) : "";
+      if (!problem.empty()) return text::Quoted(name) + ": " + problem;
+    }
+    return "";
+  };
+  auto assign = [&value, why](const Json& json) {
+    if (!json.is_object() || !why(json).empty()) return false;
+    std::map<std::string, std::string> map;
+    for (const auto& [name, item] : json.items()) {
+      if (!item.is_string()) return false;
+      map[name] = item.get<std::string>();
+    }
+    value = std::move(map);
+    return true;
+  };
+  entries_.push_back({key, "an object of strings (" + documentation + ")", documentation, assign,
+                      [&value] { return Json(value); }});
+  entries_.back().why = why;
+}
+
+const Binder::Entry* Binder::Find(const std::string& key) const {
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return &entry;
+  }
+  return nullptr;
+}
+
+Binder::Entry* Binder::Find(const std::string& key) {
+  for (Entry& entry : entries_) {
+    if (entry.key == key) return &entry;
+  }
+  return nullptr;
+}
+
+/// Where a user finds the keys: a program prints those of its config.
+std::string Binder::AllKeys() const {
+  if (what_ == "config") return "--print-config lists the keys";
+  std::string keys = "there are:";
+  for (const Entry& entry : entries_) keys += (keys.ends_with(':') ? " " : ", ") + entry.key;
+  return keys;
+}
+
+Result<void> Binder::Assign(const std::string& key, const Json& value, const std::string& where,
+                            const std::string& origin) {
+  Entry* entry = Find(key);
+  if (entry == nullptr) {
+    return UsageError(what_ + ": unknown key \"" + key + "\" in " + where + "; " + AllKeys());
+  }
+  if (!entry->assign(value)) {
+    if (const std::string why = entry->why ? entry->why(value) : ""; !why.empty()) {
+      return UsageError(what_ + ": " + key + " in " + where + ": " + why);
+    }
+    const std::string shown = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return UsageError(what_ + ": " + key + " = " + shown + " in " + where + "; it must be " +
+                      entry->allowed);
+  }
+  entry->origin = origin;
+  return {};
+}
+
+Result<void> Binder::ApplyText(const std::string& text, const std::string& origin) {
+  const auto json = text::ParseOrderedJson(text, origin);
+  if (!json) return UsageError(what_ + ": " + json.error().message);
+  if (!json->is_object()) return UsageError(what_ + ": " + origin + " must hold one JSON object");
+  const auto lines = LinesOfKeys(text);
+  for (const auto& [key, value] : json->items()) {
+    const auto line = lines.find(key);
+    const std::string place =
+        line == lines.end() ? origin : origin + ":" + std::to_string(line->second);
+    if (const Result<void> result = Assign(key, value, origin, place); !result) return result;
+  }
+  return {};
+}
+
+Result<void> Binder::ApplyFile(const std::string& path) {
+  const Result<std::string> text = ReadTextFile(path, 1u << 20);
+  if (!text) return UsageError(what_ + ": " + text.error().message);
+  return ApplyText(*text, path);
+}
+
+Result<void> Binder::ApplySetting(const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    return UsageError("--set " + setting + ": write it as key=value");
+  }
+  const std::string key = setting.substr(0, equals);
+  const std::string text = setting.substr(equals + 1);
+  const Entry* entry = Find(key);
+  Json value = Json::parse(text, nullptr, false);
+  if (value.is_discarded() || (entry != nullptr && entry->text && !value.is_string())) {
+    if (!text::IsUtf8(text)) return UsageError("--set " + key + ": its value is not text in UTF-8");
+    value = text;
+  }
+  return Assign(key, value, "--set", "--set");
+}
+
+Result<void> Binder::Apply(const std::string& file, const std::vector<std::string>& settings) {
+  if (!file.empty()) {
+    if (const auto applied = ApplyFile(file); !applied) return applied;
+  }
+  for (const std::string& setting : settings) {
+    if (const auto applied = ApplySetting(setting); !applied) return applied;
+  }
+  return {};
+}
+
+std::string Binder::Print() const {
+  Json json = Json::object();
+  for (const Entry& entry : entries_) json[entry.key] = entry.read();
+  return json.dump(2);
+}
+
+void Binder::SetOrigin(const std::string& key, const std::string& origin) {
+  if (Entry* entry = Find(key)) entry->origin = origin;
+}
+
+std::string Binder::PrintOrigins() const {
+  std::string text;
+  for (const Entry& entry : entries_) {
+    const Json one{{"value", entry.read()}, {"origin", entry.origin}};
+    text += (text.empty() ? "{\n  " : ",\n  ") + Json(entry.key).dump() + ": " + one.dump();
+  }
+  return text + "\n}";
+}
+
+std::string Binder::Describe() const {
+  std::string text;
+  for (const Entry& entry : entries_) {
+    text += entry.key + ": " + entry.documentation + " (" + entry.allowed + "; " +
+            entry.read().dump() + ")\n";
+  }
+  return text;
+}
+
+std::vector<Change> Differences(const Binder& before, const Binder& after) {
+  const Json old_values = Json::parse(before.Print()), new_values = Json::parse(after.Print());
+  std::vector<Change> changes;
+  for (const auto& [key, value] : new_values.items()) {
+    const std::string old_text = old_values.contains(key) ? old_values[key].dump() : "";
+    if (old_text != value.dump()) changes.push_back({key, old_text, value.dump()});
+  }
+  return changes;
+}
+
+}  // namespace footing::config

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "common/runtime/timer.h"
+
+/// What a program reports to the service manager that started it (sd_notify(3)), and what it got
+/// from it (sd_listen_fds(3)). Started by hand, nothing of this happens.
+namespace footing::service_manager {
+
+/// The descriptor of the listening socket that the manager passed under this name
+/// (FileDescriptorName= of the socket unit); -1 when there is none.
+int PassedSocket(const std::string& name);
+
+/// Says that the program is ready, that it ends, and, where the unit has WatchdogSec=, that it is
+/// alive: twice in each interval, while its io thread turns and no other thread is stuck.
+class Notifier {
+ public:
+  /// `what_is_stuck` names a thread that has not come round its loop for too long; empty: none.
+  Notifier(boost::asio::io_context& io, std::function<std::string()> what_is_stuck)
+      : timer_(io), what_is_stuck_(std::move(what_is_stuck)) {}
+
+  /// `status` is what `systemctl status` shows.
+  void Ready(const std::string& status);
+  void Stopping();
+
+ private:
+  void Beat();
+  void Report();
+
+  timer::Timer timer_;
+  std::chrono::microseconds interval_{0};
+  std::function<std::string()> what_is_stuck_;
+  std::string status_;
+  std::string stuck_;  ///< As it was said.
+};
+
+}  // namespace footing::service_manager

@@ -1,0 +1,13 @@
+#include "common/virtual/devices/random.h"
+
+namespace footing::noise {
+
+double Random::Uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+
+double Random::Normal() {
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) sum += Uniform();
+  return sum;
+}
+
+}  // namespace footing::noise

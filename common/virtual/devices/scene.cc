@@ -1,0 +1,149 @@
+#include "common/virtual/devices/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/body/kinematics.h"
+#include "common/base/quantile.h"
+#include "common/virtual/motion/edit.h"
+#include "common/virtual/devices/stance.h"
+
+namespace footing::virtual_sensors {
+namespace {
+
+using body::Landmark;
+
+constexpr double kStandShare = 0.25;  // Of the frames have a foot lower than it stands.
+constexpr Eigen::Index kFramesPerProgress = 2000;
+
+// A T-pose of straight lines has its weight over the heels. A person leans ahead until it is over
+// the rest point of the soles: all but the feet turn about the ankles.
+void Lean(const body::Body& body, double rest_share, Eigen::VectorXd& pose) {
+  motion::Motion still;
+  still.skeleton = body.skeleton;
+  still.rate_hz = 100;
+  still.q = pose.replicate(1, 2);
+  const BodyCourse course = Follow(body, still);
+  double rest_x = 0;
+  for (const auto& sole : course.sole_m)
+    rest_x += (1 - rest_share) * 0.25 * (sole[0](0, 0) + sole[1](0, 0)) +
+              rest_share * 0.25 * (sole[2](0, 0) + sole[3](0, 0));
+  const double angle = (rest_x - course.com_m(0, 0)) / course.com_m(2, 0);
+  const body::Skeleton& skeleton = body.skeleton;
+  const Eigen::Matrix3d turn = body::AxisRotation(body::Axis::kY, angle);
+  body::SetJointRotation(skeleton.joint(0), turn * body::JointRotation(skeleton.joint(0), pose),
+                         pose);
+  pose(0) += angle * pose(2);
+  body::Kinematics at(skeleton);
+  for (const Landmark landmark : {Landmark::kLeftAnkle, Landmark::kRightAnkle}) {
+    const int ankle = body.landmarks[landmark];
+    const body::Joint& joint = skeleton.joint(ankle);
+    body::ComputeKinematics(skeleton, pose, at);
+    const Eigen::Matrix3d& R_WP = at.R_WJ[static_cast<std::size_t>(joint.parent)];
+    const Eigen::Matrix3d& R_WJ = at.R_WJ[static_cast<std::size_t>(ankle)];
+    body::SetJointRotation(joint, R_WP.transpose() * turn.transpose() * R_WJ, pose);
+  }
+}
+
+// The T-pose where the clip begins, on feet that stand as they do there, held, then the clip.
+motion::Motion WithTPose(const motion::Motion& clip, const body::Body& body,
+                         const SceneOptions& options) {
+  Eigen::VectorXd pose = body::TPose(clip.skeleton, body.landmarks);
+  Stance stance(body, pose, clip.q.col(0));
+  Lean(body, options.rest_share, pose);
+  stance.StandOver(pose);
+  const auto hold = static_cast<Eigen::Index>(std::lround(options.hold_s * clip.rate_hz));
+  const auto leave = static_cast<Eigen::Index>(std::lround(options.leave_s * clip.rate_hz));
+  motion::Motion out = clip;
+  out.q.resize(clip.q.rows(), hold + leave + clip.q.cols());
+  for (Eigen::Index i = 0; i < hold + leave; ++i) {
+    const double u = std::max(0.0, static_cast<double>(i - hold) / static_cast<double>(leave));
+    const double s = u * u * u * (10 - 15 * u + 6 * u * u);
+    Eigen::VectorXd q = pose + s * (clip.q.col(0) - pose);
+    if (u > 0) stance.KeepFeet(s, q);
+    out.q.col(i) = q;
+  }
+  out.q.rightCols(clip.q.cols()) = clip.q;
+  return out;
+}
+
+}  // namespace
+
+double FloorHeight(const motion::Motion& motion, const body::Landmarks& landmarks) {
+  std::vector<int> joints;
+  for (const Landmark left : {Landmark::kLeftAnkle, Landmark::kLeftToe}) {
+    for (const Landmark landmark : {left, body::Mirrored(left)}) {
+      if (landmarks[landmark] >= 0) joints.push_back(landmarks[landmark]);
+    }
+  }
+  body::Kinematics standing(motion.skeleton), at(motion.skeleton);
+  body::ComputeKinematics(motion.skeleton, body::TPose(motion.skeleton, landmarks), standing);
+  std::vector<double> lowest;
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    body::ComputeKinematics(motion.skeleton, motion.q.col(i), at);
+    double low = std::numeric_limits<double>::infinity();
+    for (const int joint : joints) {
+      const auto index = static_cast<std::size_t>(joint);
+      low = std::min(low, at.p_WJ[index].z() - standing.p_WJ[index].z());
+    }
+    lowest.push_back(low);
+  }
+  return text::Quantile(std::move(lowest), kStandShare);
+}
+
+Result<Scene> MakeScene(motion::Motion clip, const body::PersonParameters& person,
+                        const SceneOptions& options, const std::string& origin) {
+  const auto named = [&origin](const Error& error) {
+    return Error{error.kind, origin + ": " + error.message};
+  };
+  const auto landmarks = body::FindLandmarks(clip.skeleton);
+  if (!landmarks) return named(landmarks.error());
+  auto made = body::MakeBody(clip.skeleton, person);
+  if (!made) return named(made.error());
+  if (clip.frames() < 2) return InvalidData(origin + ": a motion needs two frames");
+
+  if (options.t_pose) {
+    clip = motion::FacingForward(motion::Continuous(std::move(clip)), *landmarks);
+    clip.q.row(2).array() -= FloorHeight(clip, *landmarks);
+    if (options.loop_s > 0) clip = motion::Looped(clip, options.loop_s);
+    clip = WithTPose(clip, *made, options);
+  }
+  Scene scene;
+  scene.body = *std::move(made);
+  scene.motion = motion::Continuous(std::move(clip));
+  scene.course = Follow(scene.body, scene.motion);
+  scene.reaction = React(scene.course);
+  return scene;
+}
+
+void Shift(const Eigen::Vector2d& by, Scene& scene) {
+  scene.motion.q.topRows<2>().colwise() += by;
+  scene.course.com_m.topRows<2>().colwise() += by;
+  for (auto& sole : scene.course.sole_m) {
+    for (auto& point : sole) point.topRows<2>().colwise() += by;
+  }
+  scene.reaction.cop_m.colwise() += by;
+}
+
+Eigen::Vector3d SoleMiddle(const BodyCourse& course, std::size_t foot, Eigen::Index frame) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const auto& point : course.sole_m[foot]) middle += point.col(frame) / kFootPoints;
+  return middle;
+}
+
+std::vector<std::array<FootForce, kFeet>> ShareThroughout(
+    const Scene& scene, const std::function<void(double done)>& progress) {
+  std::vector<std::array<FootForce, kFeet>> feet;
+  const Eigen::Index frames = scene.course.frames();
+  feet.reserve(static_cast<std::size_t>(frames));
+  for (Eigen::Index i = 0; i < frames; ++i) {
+    feet.push_back(ShareBetweenFeet(scene.course, scene.reaction, i));
+    if (progress && (i + 1) % kFramesPerProgress == 0)
+      progress(static_cast<double>(i + 1) / static_cast<double>(frames));
+  }
+  return feet;
+}
+
+}  // namespace footing::virtual_sensors

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "common/base/result.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/motion/table.h"
+
+/// Joint angles of a body, as the exports write them and evaluations score them.
+namespace footing::joint_angles {
+
+/// Angles of the joints, degrees, and the root's position, m, under the names that the coordinates
+/// have in the full-body model of Rajagopal et al. 2016; 0 in the upright body with hanging arms.
+///
+/// Every joint is a rotation about z, then x, then y of the parent's frame, as in that model. The
+/// elbow bends about z of the upper arm: where z lies in the arm is found from the frame in which
+/// the elbow is bent most. InvalidData where the skeleton has no joint of a name that is known.
+///
+/// Two triples of angles describe the same rotation. The one nearest to the frame before is taken,
+/// or, to compare two motions, the one nearest to the same frame of `near` (null: none).
+Result<motion::Table> JointAngles(const motion::Motion& motion,
+                                  const motion::Motion* near = nullptr);
+
+}  // namespace footing::joint_angles

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "daemon/offline/analysis/board.h"
+
+namespace footing::eval {
+
+/// One board of an export, and what the export says about it; nothing where it does not.
+struct BoardExport {
+  std::vector<posturography::CornerSample> samples;  ///< In seconds since the first one.
+  std::optional<bool> simulated;                     ///< At least one sample is.
+  std::optional<bool> tared;                         ///< All samples are.
+  std::optional<bool> calibrated;                    ///< All samples are.
+  std::optional<std::uint64_t> missing_ticks;        ///< Of the server, in the whole recording.
+};
+
+/// The file is the boards' CSV of `footing-log export`, by its header.
+bool IsBoardExport(const std::string& path);
+
+/// One board out of such a file. `board` is a role (left_board), a device number, or empty when the
+/// file holds one board only; a usage error lists the boards when it holds several or not that one.
+/// Missing ticks come from the file of gaps beside it; where there is none but the export's file of
+/// devices, none are missing.
+Result<BoardExport> ReadBoardExport(const std::string& path, const std::string& board);
+
+}  // namespace footing::eval

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "daemon/offline/pose_run/held_hands.h"
+#include "daemon/offline/pose_run/insole_run.h"
+#include "daemon/offline/pose_run/plates.h"
+#include "daemon/offline/pose_run/pose_run.h"
+#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/reconstruction/models.h"
+
+namespace footing::eval {
+
+/// A motion file, and what the boards and hands measure of it.
+struct PoseSceneOptions {
+  std::string motion;    ///< BVH, AMC, TRC or C3D, or a choreography (.json).
+  std::string skeleton;  ///< ASF, of an AMC.
+  std::optional<double> bvh_unit_m = {};
+  std::string still;              ///< TRC or C3D of the same person standing, of markers.
+  std::string forces;             ///< MOT, STO or C3D of the plates under the same trial.
+  std::string still_forces = {};  ///< The same of the plates under `still`; may be empty.
+  std::string activities;         ///< CSV of labels (run/activity.h); empty: by rules.
+  bool standard_layout = true;    ///< Fit any other skeleton to the one that the engine runs.
+  pose_run::Settings settings;
+};
+
+Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options);
+
+/// With the plates of options.forces, whose COPs are moved by what those of options.still_forces
+/// are off from under the body that stands still. A file that cannot be read is InvalidData, too.
+Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options);
+
+Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options);
+
+Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options,
+                                      const pose_run::Places& places);
+
+/// Refuses a model that was trained on the motion's subject. Empty: the one that the product
+/// carries.
+Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion);
+
+/// Reads the models and refuses those that were trained on the motion's subject (the file's name up
+/// to the first '_'); with `same_person`, only those that were trained on this very file: a
+/// person's own model is evaluated on another of their takes. No file: those that the product
+/// carries.
+Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,
+                                              const std::string& motion, bool same_person = false);
+
+}  // namespace footing::eval

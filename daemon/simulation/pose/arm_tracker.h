@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "daemon/simulation/pose/arm_belief.h"
+#include "daemon/simulation/pose/arm_features.h"
+#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/hand_attitude.h"
+
+namespace footing::arms {
+
+/// Where a device of an arm is: in the fist, or strapped along the upper arm or the forearm, with
+/// its x towards the hand.
+enum class Place { kFist, kUpperArm, kForearm };
+inline constexpr std::size_t kPlaces = 3;
+/// Of each arm by Place: whether the device is there and heard.
+using Heard = std::array<std::array<bool, kPlaces>, kArms>;
+inline constexpr Heard kAllHeard{{{true, true, true}, {true, true, true}}};
+
+/// Both arms from what the devices on them measure: in the fists, strapped on upper arms and
+/// forearms, or both. An arm needs the one in its fist, and a model, or both straps. A value that
+/// can be copied; no allocation after its making. Its past is that of the sensors, never its own
+/// estimates: it cannot run away.
+class ArmTracker {
+ public:
+  /// Without a model devices in the fists count for nothing.
+  explicit ArmTracker(const std::optional<ArmModel>& model);
+
+  /// A sample of one device, `step_s` after its last.
+  void Add(std::size_t arm, const HandReading& reading, double step_s, Place place = Place::kFist);
+  /// A T-pose begins: the readings so far do not count. Nothing for devices that are aligned.
+  void BeginTPose();
+  /// The T-pose is held and was for some seconds.
+  void Align();
+  /// A device was not heard for too long to know how it has turned: it counts for nothing until the
+  /// next Align.
+  void Lose(std::size_t arm, Place place = Place::kFist);
+  /// How the arms are held now, `step_s` after the last call. Invalid before Align.
+  const std::array<ArmEstimate, kArms>& Advance(double step_s, const Heard& heard = kAllHeard);
+
+  /// Of the last Advance; only when both fists are aligned.
+  const ArmFeatures& features() const { return features_; }
+  bool aligned() const { return hand(0).valid && hand(1).valid; }
+  const HandState& hand(std::size_t arm, Place place = Place::kFist) const {
+    return devices_[arm][static_cast<std::size_t>(place)].state();
+  }
+
+ private:
+  HandState StateOf(std::size_t arm, Place place, const Heard& heard) const;
+  ArmEstimate Estimate(std::size_t arm, const Heard& heard);
+
+  std::optional<ArmModel> model_;
+  std::array<std::array<HandAttitude, kPlaces>, kArms> devices_;
+  ArmFeatures features_;
+  ArmFeatures::Values values_ = ArmFeatures::Values::Zero();
+  std::array<ArmEstimate, kArms> estimates_;
+};
+
+}  // namespace footing::arms
