@@ -36,12 +36,39 @@ endfunction()
 # Listing the cases of a program takes a moment, but its limit of 5 s cuts it on a loaded machine.
 set(DISCOVERY_LIMIT_S 120)
 
-# add_module_test(<name> [TOGETHER] SOURCES ... [DEPS ...] [LABELS ...] [QUIET_S seconds]): one GoogleTest program; every case
-# becomes one CTest test, or with TOGETHER all cases one: they share what takes long to make. Cases that call GTEST_SKIP show as skipped.
+# What a build with sanitizers leaves out of a program, as GoogleTest's filter, or the word "all".
+set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/release_only.txt)
+file(STRINGS ${PROJECT_SOURCE_DIR}/tests/release_only.txt RELEASE_ONLY_CASES REGEX "^[^#]")
+function(release_only_of name out)
+  set(left_out "")
+  foreach(case IN LISTS RELEASE_ONLY_CASES)
+    if(case STREQUAL name)
+      set(left_out all)
+      break()
+    elseif(case MATCHES "^${name}[.](.+)$")
+      list(APPEND left_out ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  list(JOIN left_out ":" left_out)
+  set(${out} "${left_out}" PARENT_SCOPE)
+endfunction()
+
+# add_module_test(<name> SOURCES ... [DEPS ...] [LABELS ...] [QUIET_S seconds]): one GoogleTest program and one CTest test, whose
+# cases share a process. Its cases are counted from the XML that it writes (scripts/summarise-tests). With sanitizers
+# it leaves out the cases that tests/release_only.txt names.
 function(add_module_test name)
-  cmake_parse_arguments(arg "TOGETHER" "QUIET_S" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "" "QUIET_S" "SOURCES;DEPS;LABELS" ${ARGN})
   if(FOOTING_SANITIZE AND arg_LABELS MATCHES "long")
     return()  # Never run with sanitizers.
+  endif()
+  set(words --gtest_brief=1 --gtest_output=xml:${PROJECT_BINARY_DIR}/tests/results/${name}.xml)
+  if(FOOTING_SANITIZE)
+    release_only_of(${name} left_out)
+    if(left_out STREQUAL "all")
+      return()
+    elseif(left_out)
+      list(APPEND words --gtest_filter=-${left_out})
+    endif()
   endif()
   if(NOT arg_QUIET_S)
     set(arg_QUIET_S ${QUIET_S_OF_MOST})
@@ -67,11 +94,7 @@ function(add_module_test name)
   if(arg_LABELS)
     list(APPEND properties LABELS "${arg_LABELS}")
   endif()
-  if(arg_TOGETHER)
-    add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES ${properties})
-    return()
-  endif()
-  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
-                       DISCOVERY_TIMEOUT ${DISCOVERY_LIMIT_S} PROPERTIES ${properties})
+  add_test(NAME ${name} COMMAND ${name} ${words})
+  # What takes longest begins first.
+  set_tests_properties(${name} PROPERTIES ${properties} COST ${arg_QUIET_S})
 endfunction()

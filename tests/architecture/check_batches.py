@@ -1,4 +1,4 @@
-"""Fails when two files of one module declare the same name in their unnamed namespaces.
+"""Fails when two files of one module declare the same name in their unnamed namespaces of one namespace.
 
 The files of a module are compiled in batches (CMAKE_UNITY_BUILD), where unnamed namespaces of several
 files are one. A name that means the same belongs in a header of the module; one that means something
@@ -12,6 +12,7 @@ import sys
 
 TOPS = ("common", "daemon", "clients")
 COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.S)
+OUTER = re.compile(r"^namespace ([\w:]+) \{", re.M)
 OPEN = re.compile(r"^(?:inline )?namespace \{", re.M)
 NAMED = re.compile(r"^(?:template <[^>]*> ?)?(?:struct|class|enum class|enum|using|concept) (\w+)\b(?! ?::)")
 CONSTANT = re.compile(r"^(?:inline |static )?(?:constexpr|const|constinit|thread_local)\b(.*)$", re.S)
@@ -40,8 +41,9 @@ def statements(text):
 
 
 def bodies(text):
+    """(enclosing namespace, body) of each unnamed namespace."""
     for found in OPEN.finditer(text):
-        yield text[found.end():]
+        yield (OUTER.findall(text[:found.start()]) or [""])[-1], text[found.end():]
 
 
 def names_of(statement):
@@ -73,13 +75,13 @@ def check(root):
             for path in sorted(folder.glob("*.cc")):
                 text = COMMENT.sub(lambda m: '""' if m.group(0)[0] in "R\"'" else "", path.read_text())
                 text = re.sub(r"^\s*#.*$", "", text, flags=re.M)
-                for body in bodies(text):
+                for outer, body in bodies(text):
                     for statement in statements(body):
                         for name in names_of(statement):
                             plain = name.split("(")[0]
                             kind = "function" if "(" in name else "other"
-                            first = seen.setdefault(name, path)
-                            other, file = bases.setdefault(plain, (kind, path))
+                            first = seen.setdefault((outer, name), path)
+                            other, file = bases.setdefault((outer, plain), (kind, path))
                             if other != kind and file != path:
                                 first = file  # A type beside a function of its name.
                             if first != path:

@@ -16,8 +16,8 @@
 #include "common/runtime/timer.h"
 #include "common/net/client.h"
 #include "tests/clients/relay/nats_server.h"
-#include "tests/common/timer/simulated_time.h"
-#include "tests/common/transport/io_fixture.h"
+#include "tests/common/runtime/simulated_time.h"
+#include "tests/common/net/io_fixture.h"
 
 namespace footing::relay {
 

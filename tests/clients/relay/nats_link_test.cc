@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/common/transport/io_fixture.h"
+#include "tests/common/net/io_fixture.h"
 
 /// What a real server does only by chance, or only when it is broken. What it does otherwise is in
 /// tests/scenarios/relay.py.

@@ -6,7 +6,7 @@
 #include "tests/clients/view/made_preview.h"
 #include "tests/clients/view/made_stream.h"
 #include "tests/clients/view/picture_fixture.h"
-#include "tests/common/camera_pose/boards.h"
+#include "tests/common/camera/boards.h"
 
 namespace footing::render {
 namespace {

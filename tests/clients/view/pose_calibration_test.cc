@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "common/frames/camera_file.h"
-#include "tests/common/camera_pose/boards.h"
+#include "tests/common/camera/boards.h"
 
 namespace footing::view {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/camera/samples.h"
 #include "common/guide/set_up.h"
 #include "common/base/units.h"
-#include "tests/common/camera_pose/boards.h"
+#include "tests/common/camera/boards.h"
 
 namespace footing::guide {
 namespace {

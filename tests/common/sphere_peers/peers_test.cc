@@ -16,7 +16,7 @@
 #include "common/camera/find.h"
 #include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
-#include "tests/common/sphere/rendered.h"
+#include "tests/common/camera/rendered.h"
 #include "tests/common/sphere_peers/peers.h"
 
 namespace footing::sphere_peers {

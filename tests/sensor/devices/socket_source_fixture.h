@@ -10,7 +10,7 @@
 #include "common/net/socket.h"
 #include "daemon/sensor/devices/socket_source.h"
 #include "footing/v1/device.pb.h"
-#include "tests/common/transport/io_fixture.h"
+#include "tests/common/net/io_fixture.h"
 
 namespace footing::devices {
 

@@ -7,7 +7,7 @@
 
 #include "common/runtime/timer.h"
 #include "footing/v1/device.pb.h"
-#include "tests/common/timer/simulated_time.h"
+#include "tests/common/runtime/simulated_time.h"
 #include "tests/sensor/devices/socket_source_fixture.h"
 
 // Devices that are not taken, and those that come too often.

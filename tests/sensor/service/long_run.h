@@ -13,7 +13,7 @@
 #include "common/virtual/devices/balance_board.h"
 #include "common/virtual/devices/link_model.h"
 #include "daemon/sensor/service/hub.h"
-#include "tests/sensor/handshake/port_model.h"
+#include "tests/sensor/reports/port_model.h"
 
 namespace footing::sensor {
 using handshake::PortModel;

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "tests/sensor/link/sampled_time_error.h"
+#include "tests/sensor/reports/sampled_time_error.h"
 #include "tests/sensor/service/long_run.h"
 
 namespace footing::sensor {

@@ -1,0 +1,226 @@
+#include <unistd.h>
+
+#include "tests/common/net/server_fixture.h"
+
+namespace footing::transport {
+namespace {
+
+class ServerCommandTest : public ServerFixture {
+ protected:
+  std::unique_ptr<TestClient> WithRole(v1::Role role, std::size_t listener = 0) {
+    auto client = Connect(listener);
+    client->Read();
+    client->Send(Hello(role));
+    EXPECT_TRUE(WaitFor(*client, v1::Envelope::kWelcome));
+    return client;
+  }
+  v1::CommandResult Ask(TestClient& client, std::uint64_t id, std::uint32_t deadline_ms = 0) {
+    v1::Envelope message;
+    message.mutable_command()->set_id(id);
+    message.mutable_command()->set_deadline_ms(deadline_ms);
+    message.mutable_command()->mutable_set_rumble()->set_on(true);
+    return Call(client, message);
+  }
+  v1::CommandResult Call(TestClient& client, const v1::Envelope& message) {
+    const std::size_t before = client.Count(v1::Envelope::kCommandResult);
+    client.Send(message);
+    EXPECT_TRUE(RunUntil([&] { return client.Count(v1::Envelope::kCommandResult) == before + 1; }));
+    return client.messages.back().command_result();
+  }
+  v1::CommandResult List(TestClient& client, std::uint64_t after = 0) {
+    v1::Envelope message;
+    message.mutable_command()->set_id(++last_id_);
+    message.mutable_command()->mutable_list_sessions()->set_after(after);
+    return Call(client, message);
+  }
+  v1::CommandResult EndThem(TestClient& client, const std::vector<std::uint64_t>& numbers,
+                            const std::string& reason = "") {
+    v1::Envelope message;
+    message.mutable_command()->set_id(++last_id_);
+    v1::EndSessions& end = *message.mutable_command()->mutable_end_sessions();
+    end.mutable_sessions()->Add(numbers.begin(), numbers.end());
+    end.set_reason(reason);
+    return Call(client, message);
+  }
+
+  std::uint64_t last_id_ = 100;
+};
+
+TEST_F(ServerCommandTest, ControlAndAdminAreCarriedOutViewAndLogAreNot) {
+  StartServer();
+  for (const v1::Role role : {v1::ROLE_CONTROL, v1::ROLE_ADMIN}) {
+    const v1::CommandResult result = Ask(*WithRole(role), 7);
+    EXPECT_TRUE(result.ok());
+    EXPECT_EQ(result.id(), 7u);
+  }
+  EXPECT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[0].first.role, v1::ROLE_CONTROL);
+  for (const v1::Role role : {v1::ROLE_VIEW, v1::ROLE_LOG}) {
+    const v1::CommandResult result = Ask(*WithRole(role, 1), 7);
+    EXPECT_FALSE(result.ok());
+    EXPECT_NE(result.message().find("need the role control"), std::string::npos);
+    EXPECT_NE(result.message().find("request control in Hello"), std::string::npos);
+  }
+  EXPECT_EQ(commands_.size(), 2u);
+}
+
+TEST_F(ServerCommandTest, SessionsAreListedWithWhereTheyComeFrom) {
+  StartServer();
+  const auto control = WithRole(v1::ROLE_CONTROL);
+  const auto viewer = WithRole(v1::ROLE_VIEW, 1);
+  const auto listed = List(*control);
+  ASSERT_TRUE(listed.ok()) << listed.message();
+  ASSERT_EQ(listed.sessions_size(), 2);
+  EXPECT_FALSE(listed.more_sessions());
+  const v1::ConnectedSession &own = listed.sessions(0), &other = listed.sessions(1);
+  EXPECT_TRUE(own.own());
+  EXPECT_EQ(own.stats().role(), "control");
+  EXPECT_EQ(own.user(), geteuid());
+  EXPECT_EQ(own.granted_by(), "user");
+  EXPECT_FALSE(other.own() || other.has_user());
+  EXPECT_EQ(other.stats().client_name(), "test");
+  EXPECT_EQ(other.host(), "127.0.0.1");
+  EXPECT_EQ(other.granted_by(), "address");
+  EXPECT_EQ(List(*control, own.stats().session()).sessions_size(), 1) << "those behind it";
+  EXPECT_NE(List(*viewer).message().find("need the role control"), std::string::npos);
+  EXPECT_TRUE(commands_.empty()) << "the program is not asked";
+}
+
+TEST_F(ServerCommandTest, AnAdministratorEndsSessionsWithAReason) {
+  StartServer();
+  const auto admin = WithRole(v1::ROLE_ADMIN);
+  const auto control = WithRole(v1::ROLE_CONTROL);
+  const auto viewer = WithRole(v1::ROLE_VIEW, 1);
+  const auto listed = List(*admin);
+  ASSERT_EQ(listed.sessions_size(), 3);
+  const std::uint64_t own = listed.sessions(0).stats().session(),
+                      others = listed.sessions(2).stats().session();
+  EXPECT_NE(EndThem(*control, {others}).message().find("needs the role admin"), std::string::npos);
+  EXPECT_NE(EndThem(*admin, {own}).message().find("is the one that asks"), std::string::npos);
+  EXPECT_NE(EndThem(*admin, {}).message().find("1 to 500 sessions"), std::string::npos);
+  EXPECT_EQ(viewer->Find(v1::Envelope::kGoodbye), nullptr);
+  const auto ended = EndThem(*admin, {others, 99}, "the lab closes");
+  ASSERT_TRUE(ended.ok()) << ended.message();
+  ASSERT_EQ(ended.sessions_size(), 1) << "99 has no session";
+  EXPECT_EQ(ended.sessions(0).stats().session(), others);
+  ASSERT_TRUE(WaitFor(*viewer, v1::Envelope::kGoodbye));
+  EXPECT_EQ(viewer->Find(v1::Envelope::kGoodbye)->goodbye().reason(),
+            "ended by an administrator: the lab closes");
+  EXPECT_EQ(List(*admin).sessions_size(), 2);
+}
+
+TEST_F(ServerCommandTest, ARepeatedIdGetsItsFirstAnswerAndIsCarriedOutOnce) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  EXPECT_EQ(Ask(*client, 1).message(), "done 1");
+  EXPECT_EQ(Ask(*client, 2).message(), "done 2");
+  EXPECT_EQ(Ask(*client, 1).message(), "done 1");
+  EXPECT_EQ(commands_.size(), 2u);
+}
+
+TEST_F(ServerCommandTest, ACommandPastItsDeadlineIsNotCarriedOut) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  // Two commands arrive in one read; carrying out the first takes 50 ms.
+  on_command_ = [this] { now_ns_ += 50'000'000; };
+  for (const std::uint64_t id : {1u, 2u}) {
+    v1::Envelope message;
+    message.mutable_command()->set_id(id);
+    message.mutable_command()->set_deadline_ms(40);
+    client->Send(message);
+  }
+  ASSERT_TRUE(RunUntil([&] { return client->Count(v1::Envelope::kCommandResult) == 2; }));
+  EXPECT_EQ(commands_.size(), 1u);
+  EXPECT_NE(client->messages.back().command_result().message().find("40 ms"), std::string::npos);
+}
+
+TEST_F(ServerCommandTest, ATextWithControlCharactersIsRefusedBeforeItIsCarriedOut) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  v1::Envelope message;
+  message.mutable_command()->set_id(1);
+  message.mutable_command()->mutable_assign_role()->set_rig("a\x1b[2J");
+  client->Send(message);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kCommandResult));
+  const v1::CommandResult& result = client->messages.back().command_result();
+  EXPECT_FALSE(result.ok());
+  EXPECT_NE(result.message().find("assign_role.rig has control characters"), std::string::npos);
+  EXPECT_TRUE(commands_.empty());
+}
+
+TEST_F(ServerCommandTest, PingIsAnsweredWithFourStamps) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_VIEW, 1);
+  v1::Envelope message;
+  message.mutable_ping()->set_id(5);
+  message.mutable_ping()->set_t0_ns(77);
+  client->Send(message);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kPong));
+  const v1::Pong& pong = client->Find(v1::Envelope::kPong)->pong();
+  EXPECT_EQ(pong.id(), 5u);
+  EXPECT_EQ(pong.t0_ns(), 77);
+  EXPECT_EQ(pong.t1_ns(), now_ns_);
+  EXPECT_EQ(pong.t2_ns(), now_ns_);
+}
+
+TEST_F(ServerCommandTest, AClientThatIsNotHeardOfIsPingedThenEnded) {
+  ServerOptions options = Options();
+  options.ping_interval_s = 0.01;
+  StartServer(options);
+  const auto client = WithRole(v1::ROLE_VIEW);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kPing));  // Which it does not answer.
+  now_ns_ += 10'000'000'001;
+  ASSERT_TRUE(RunUntil([&] { return client->closed.has_value(); }));
+  EXPECT_EQ(client->Count(v1::Envelope::kPing), 1u);
+  ASSERT_TRUE(client->messages.back().has_goodbye());
+  EXPECT_NE(client->messages.back().goodbye().reason().find("10 s"), std::string::npos);
+}
+
+TEST_F(ServerCommandTest, AClientThatAsksAndNeverReadsIsEnded) {
+  ServerOptions options = Options();
+  options.sessions.session_messages_per_s = 1e6;
+  options.sessions.session_kilobytes_per_s = 1e6;
+  StartServer(options);
+  const auto client = Connect();
+  client->Send(Hello());
+  v1::Envelope ping;
+  ping.mutable_ping()->set_id(1);
+  // Each Ping is answered; nobody reads the answers, so sooner or later they do not fit any more.
+  const std::string payload = ping.SerializeAsString();
+  ASSERT_TRUE(RunUntil([&] {
+    for (int i = 0; i < 100; ++i) client->connection->Send(payload);
+    return ended_.size() == 1;
+  }));
+}
+
+TEST_F(ServerCommandTest, ACommandLeftOpenIsCarriedOutOnceAndAnsweredWhenItIsDone) {
+  StartServer();
+  answer_later_ = true;
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  v1::Envelope message;
+  message.mutable_command()->set_id(7);
+  message.mutable_command()->mutable_set_rumble()->set_on(true);
+  client->Send(message);
+  client->Send(message);  // Asked again while it is under way.
+  v1::Envelope ping;
+  ping.mutable_ping()->set_id(1);
+  client->Send(ping);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kPong));
+  EXPECT_EQ(commands_.size(), 1u);
+  EXPECT_EQ(client->Count(v1::Envelope::kCommandResult), 0u);
+  v1::CommandResult result;
+  result.set_id(7);
+  result.set_ok(true);
+  result.set_message("on the disk");
+  server_->Answer(commands_[0].first.session, result);
+  server_->Answer(commands_[0].first.session, result);  // Once is enough.
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kCommandResult));
+  client->Send(message);  // And again when it is done: the same answer.
+  ASSERT_TRUE(RunUntil([&] { return client->Count(v1::Envelope::kCommandResult) == 2; }));
+  EXPECT_EQ(client->messages.back().command_result().message(), "on the disk");
+  EXPECT_EQ(commands_.size(), 1u);
+  server_->Answer(99, result);  // A session that is gone.
+}
+
+}  // namespace
+}  // namespace footing::transport

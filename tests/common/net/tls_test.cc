@@ -1,0 +1,220 @@
+#include "tests/common/net/tls_fixture.h"
+
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+
+#include "common/net/fingerprint.h"
+
+namespace footing::transport {
+namespace {
+
+using TlsTest = TlsFixture;
+
+TEST_F(TlsTest, TheFirstCertificateIsRememberedAndTheTokenLetsIn) {
+  StartTlsServer();
+  StartClient(TlsAddress(Port()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive)) << why_;
+  EXPECT_EQ(Known(Port()), server_->fingerprint());
+  EXPECT_TRUE(tls::ParseFingerprint(server_->fingerprint()));
+  const std::size_t before = ticks_.size();
+  for (int i = 0; i < 20; ++i) PublishMotion(60'000);  // Each over several TLS records.
+  ASSERT_TRUE(RunUntil([&] { return ticks_.size() == before + 20; }));
+  for (std::size_t i = before; i < ticks_.size(); ++i) {
+    ASSERT_EQ(ticks_[i].raw().reports(0).report(), std::string(60'000, 'r'));
+  }
+}
+
+TEST_F(TlsTest, AReaderThatStallsGetsGapsAndWholeFrames) {
+  StartTlsServer();
+  auto client = Connect(kTls);
+  client->Read();
+  v1::Envelope hello = Hello();
+  hello.mutable_hello()->set_token(kToken);
+  client->Send(hello);
+  client->Send(Subscribe(v1::QUEUE_POLICY_DROP_OLDEST, 4));
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kTick));
+  // The reader has no turn while 20 MB are published: socket and queue fill up.
+  for (int i = 0; i < 20; ++i) PublishMotion(1'000'000);
+  const std::uint64_t last = PublishMotion();
+  ASSERT_TRUE(RunUntil(
+      [&] { return client->Sequences().size() > 0 && client->Sequences().back() == last; }));
+  EXPECT_NE(client->Find(v1::Envelope::kGap), nullptr);
+}
+
+TEST_F(TlsTest, AChangedCertificateIsRefusedAndTheTokenIsNotSent) {
+  StartTlsServer();
+  const std::uint16_t port = Port();
+  StartClient(TlsAddress(port));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive)) << why_;
+  const std::string first = server_->fingerprint();
+  server_.reset();
+  options_.identity_file = config_.Path("another.pem");
+  StartTlsServer(port);
+  ASSERT_NE(server_->fingerprint(), first);
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  EXPECT_TRUE(WhyHas("THE CERTIFICATE HAS CHANGED")) << why_;
+  EXPECT_TRUE(WhyHas(first) && WhyHas(server_->fingerprint())) << why_;
+  EXPECT_EQ(Known(port), first) << "what was trusted stays";
+  EXPECT_EQ(server_->statistics().sessions, 0u);
+  // A person has compared the new one: now it is taken, at the next try.
+  const tls::KnownServers known(config_.Path("known_servers"));
+  ASSERT_TRUE(known.Add("127.0.0.1:" + std::to_string(port), server_->fingerprint()).ok());
+  client_.reset();
+  StartClient(TlsAddress(port));
+  EXPECT_TRUE(RunUntilState(LinkState::kLive)) << why_;
+}
+
+TEST_F(TlsTest, TwoServersHaveTwoCertificates) {
+  StartTlsServer();
+  StartClient(TlsAddress(Port()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive)) << why_;
+  const auto one = std::move(server_);
+  const std::uint16_t port = one->ListeningOn(kTls).port;
+  ServerOptions options = options_;
+  options.identity_file = config_.Path("other.pem");
+  Server other(io_, options, {});
+  ASSERT_TRUE(other.Listen(TlsAddress()).ok());
+  StartClient(TlsAddress(other.ListeningOn(0).port));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive)) << why_;
+  EXPECT_EQ(Known(port), one->fingerprint());
+  EXPECT_EQ(Known(other.ListeningOn(0).port), other.fingerprint());
+  client_.reset();
+}
+
+TEST_F(TlsTest, WithoutTheTokenNobodyComesIn) {
+  StartTlsServer();
+  StartClient(TlsAddress(Port()), "0123456789abcdeX");
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused));
+  EXPECT_TRUE(WhyHas("the token is wrong")) << why_;
+  unsetenv("FOOTING_TOKEN_FILE");
+  state_.reset();
+  StartClient(TlsAddress(Port()), "");
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused));
+  EXPECT_TRUE(WhyHas("FOOTING_TOKEN_FILE")) << why_;
+}
+
+TEST_F(TlsTest, APlainClientOnATlsPortHearsWhatToDo) {
+  StartTlsServer();
+  Address plain = TlsAddress(Port());
+  plain.kind = Address::Kind::kTcp;
+  StartClient(plain);
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  EXPECT_TRUE(WhyHas("this port speaks TLS: connect with tls:HOST:PORT")) << why_;
+}
+
+TEST_F(TlsTest, ATlsClientOnAPlainPortHearsWhatToDo) {
+  StartTlsServer();
+  StartClient(TlsAddress(Port(1)));
+  ASSERT_TRUE(RunUntil([&] { return WhyHas("does not speak TLS"); })) << why_;
+  EXPECT_TRUE(WhyHas("connect with tcp:")) << why_;
+  EXPECT_EQ(Known(Port(1)), std::nullopt) << "nothing was proved";
+}
+
+TEST_F(TlsTest, Tls13AndNothingOlderIsSpoken) {
+  StartTlsServer();
+  EXPECT_FALSE(HandshakeOf(boost::asio::ssl::context::tlsv13_client));
+  const error_code refused = HandshakeOf(boost::asio::ssl::context::tlsv12_client);
+  EXPECT_EQ(refused.category(), boost::asio::error::get_ssl_category());
+  EXPECT_NE(refused.message().find("protocol version"), std::string::npos) << refused.message();
+}
+
+TEST_F(TlsTest, AHandshakeThatStallsIsCutOffAtTheDeadline) {
+  options_.hello_deadline_s = 0.05;
+  StartTlsServer();
+  // Nothing, half of the first bytes, and a ClientHello that never ends.
+  const std::string begun("\x16\x03\x01\x01\x04\x01\x00\x01\x00\x03\x03", 11);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, begun.size()}) {
+    tcp::socket peer = PlainPeer(Port());
+    boost::asio::write(peer, boost::asio::buffer(begun.data(), size));
+    std::optional<error_code> ended;
+    char byte = 0;
+    boost::asio::async_read(peer, boost::asio::buffer(&byte, 1),
+                            [&](const error_code& error, std::size_t) { ended = error; });
+    ASSERT_TRUE(RunUntil([&] { return ended.has_value(); })) << size;
+    EXPECT_TRUE(*ended == boost::asio::error::eof ||
+                *ended == boost::asio::error::connection_reset);
+  }
+  EXPECT_EQ(server_->statistics().refused, 3u);
+}
+
+TEST_F(TlsTest, AnEndlessClientHelloIsRefusedByItsHeader) {
+  StartTlsServer();
+  tcp::socket peer = PlainPeer(Port());
+  boost::asio::write(peer, boost::asio::buffer("\x16\x03\x01\x40\x00\x01\xff\xff\xff", 9));
+  std::optional<error_code> ended;
+  char byte = 0;
+  boost::asio::async_read(peer, boost::asio::buffer(&byte, 1),
+                          [&](const error_code& error, std::size_t) { ended = error; });
+  EXPECT_TRUE(RunUntil([&] { return ended.has_value(); })) << "long before the deadline";
+}
+
+TEST_F(TlsTest, HandshakesUnderWayTakeTheirPlaces) {
+  options_.sessions.max_sessions_per_user = 2;
+  StartTlsServer();
+  const tcp::socket one = PlainPeer(Port()), other = PlainPeer(Port());
+  ASSERT_TRUE(RunUntil([&] { return server_->statistics().accepted == 2; }));
+  StartClient(TlsAddress(Port()));
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  EXPECT_TRUE(WhyHas("2 sessions over TCP already")) << why_;
+}
+
+TEST_F(TlsTest, AHostThatNeverComesInLeavesPlacesToOthers) {
+  options_.sessions.max_entering_per_host = 2;
+  StartTlsServer();
+  const tcp::socket one = PlainPeer(Port()), other = PlainPeer(Port());
+  ASSERT_TRUE(RunUntil([&] { return server_->statistics().accepted == 2; }));
+  StartClient(TlsAddress(Port()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive)) << why_ << "; the oldest gives way";
+  ASSERT_FALSE(overloads_.empty());  // A slow machine may also see the other stranger's deadline.
+  EXPECT_NE(overloads_[0].find("2 unauthenticated connections from this host"), std::string::npos);
+  // Loopback TCP and the Unix socket are not for other hosts.
+  const auto local = Subscribed(Subscribe(), 1);
+  EXPECT_NE(local->Find(v1::Envelope::kTick), nullptr);
+}
+
+TEST_F(TlsTest, WhoIsKeptOutIsLoggedWithItsHostAndOnceInTenSeconds) {
+  StartTlsServer();
+  for (int i = 0; i < 3; ++i) {
+    state_.reset();
+    StartClient(TlsAddress(Port()), "0123456789abcdeX");
+    ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  }
+  EXPECT_EQ(server_->statistics().denied, 3u);
+  EXPECT_EQ(overloads_, std::vector<std::string>{
+                            "refused a client from 127.0.0.1: wrong token (1 since start)"});
+}
+
+TEST_F(TlsTest, ACertificateThatTheServerKnowsGivesItsRole) {
+  const auto own = tls::Identity::LoadOrMake(config_.Path("client.pem"), "viewer");
+  ASSERT_TRUE(own.ok());
+  options_.token.clear();
+  options_.clients[tls::FingerprintOf("somebody else")] = v1::ROLE_CONTROL;
+  StartTlsServer();
+  StartClient(TlsAddress(Port()), "");
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  EXPECT_TRUE(WhyHas("it does not know yours, " + own->fingerprint())) << why_;
+
+  const std::uint16_t port = Port();
+  server_.reset();
+  options_.clients[own->fingerprint()] = v1::ROLE_VIEW;
+  StartTlsServer(port);
+  StartClient(TlsAddress(port), "");
+  ASSERT_TRUE(RunUntilState(LinkState::kLive)) << why_;
+  std::optional<v1::CommandResult> result;
+  client_->Send({}, [&](const v1::CommandResult& answer) { result = answer; });
+  ASSERT_TRUE(RunUntil([&] { return result.has_value(); }));
+  EXPECT_FALSE(result->ok()) << "view never actuates";
+  EXPECT_TRUE(commands_.empty());
+}
+
+TEST_F(TlsTest, WithoutAnybodyToLetInItDoesNotListen) {
+  options_.token.clear();
+  StartServer(options_);
+  const auto refused = server_->Listen(TlsAddress());
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message.find("token_file or clients_file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footing::transport
