@@ -2,11 +2,26 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <iostream>
 #include <limits>
+#include <memory>
 #include <utility>
 
-#include "clients/camera/light_delay.h"
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <nlohmann/json.hpp>
+
+#include "clients/camera/light_checks.h"
+#include "clients/camera/video_port.h"
+#include "common/cli/cli.h"
+#include "common/frames/camera_file.h"
+#include "common/net/address.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
+#include "common/wire/wire.h"
 
 namespace footing::camera {
 namespace {
@@ -172,6 +187,277 @@ Result<void> BlinkCalibration::EndAllLit() {
       std::max(profile_.limb_sd, share * Scatter(all, profile_.limb, &sphere::Estimate::limb));
   step_ = Step::kDone;
   return {};
+}
+
+namespace {
+
+constexpr std::chrono::seconds kDevicesWithin(5), kStepWithin(30);
+
+class Calibrating {
+ public:
+  explicit Calibrating(const CalibrateOptions& options)
+      : options_(options),
+        signals_(io_, SIGINT, SIGTERM),
+        limit_(io_),
+        lights_(io_, options.sensor, [this] { OnDevices(); }) {}
+
+  Result<BlinkReport> Run() {
+    auto source = OpenFrames(io_, options_.frames, options_.camera,
+                             [](const std::string& line) { log::Warning(line); });
+    if (!source) return source.error();
+    source_ = std::move(source).value();
+    signals_.async_wait([this](boost::system::error_code error, int) {
+      if (!error) End(Failure("stopped"));
+    });
+    lights_.Start();
+    log::Info("looking for PS Moves in footingd at " + options_.sensor.Text());
+    Limit(kDevicesWithin);
+    io_.run();
+    if (!end_) return end_.error();
+    return report_;
+  }
+
+ private:
+  /// What takes longer does not come any more.
+  void Limit(std::chrono::seconds within) {
+    limit_.expires_after(within);
+    limit_.async_wait([this](boost::system::error_code error) {
+      if (!error) End(Late());
+    });
+  }
+
+  Error Late() const {
+    if (calibration_)
+      return Failure("no frames came for 30 s: is " + options_.frames.Name() + " sending?");
+    if (!lights_.has_list())
+      return NoDevice(
+          "no footingd: " + lights_.link() +
+          transport::RemedyFor(lights_.link(), "start it, or name its address with --sensor"));
+    return NoDevice(
+        "footingd has no PS Move with the role left_hand, right_hand or head: connect one, then "
+        "give it one of them (footing-ctl assign)");
+  }
+
+  void OnDevices() {
+    if (calibration_ || ended_ || lights_.moves().empty()) return;
+    std::vector<double> radii_m;
+    for (const stream::DeviceStatus& move : lights_.moves()) {
+      for (const BlinkReport::Sphere& other : report_.spheres) {
+        if (other.role == move.role)
+          return End(UsageError(other.serial + " and " + move.serial + " are both " +
+                                stream::Name(move.role) +
+                                ": give one another role (footing-ctl assign)"));
+      }
+      BlinkReport::Sphere sphere{move.role, move.serial, sphere::Target().radius_m, {}};
+      for (const frames::HeldSphere& held : options_.camera.spheres)
+        if (held.role == move.role) sphere.radius_m = held.target.radius_m;
+      devices_.push_back(move.device);
+      radii_m.push_back(sphere.radius_m);
+      report_.spheres.push_back(std::move(sphere));
+    }
+    if (devices_.size() > 4) return End(UsageError("more than four PS Moves: switch some off"));
+    calibration_.emplace(options_.camera.lens, options_.camera.settings, std::move(radii_m));
+    source_->Start(
+        [this](const frames::Frame& frame, std::int64_t exposed_ns) { Take(frame, exposed_ns); },
+        [this](Result<void> end) {
+          End(end ? Result<void>(Failure("the frames ended before the calibration did")) : end);
+        });
+    Switch();
+  }
+
+  /// Sets all lights as the calibration wants them now.
+  void Switch() {
+    step_ = calibration_->steps();
+    Limit(kStepWithin);
+    if (const std::string message = calibration_->TakeMessage(); !message.empty())
+      log::Info(message);
+    unanswered_ = devices_.size();
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      lights_.Set(devices_[i], calibration_->lights()[i], [this, i](Result<void> done) {
+        if (!done)
+          return End(Failure(report_.spheres[i].serial +
+                             ": its light cannot be set: " + done.error().message));
+        if (--unanswered_ == 0 && !ended_) calibration_->LightsAreSet(clock::MonotonicNs());
+      });
+    }
+  }
+
+  void Take(const frames::Frame& frame, std::int64_t exposed_ns) {
+    if (ended_) return;
+    if (const auto checked = CheckSize(frame, options_.camera); !checked)
+      return End(checked.error());
+    if (const auto taken = calibration_->Take(frame.View(), exposed_ns); !taken)
+      return End(taken.error());
+    if (calibration_->is_done()) return Finish();
+    if (calibration_->steps() != step_) Switch();
+  }
+
+  void Finish() {
+    for (std::size_t i = 0; i < report_.spheres.size(); ++i)
+      report_.spheres[i].calibrated = calibration_->spheres()[i];
+    report_.profile = calibration_->profile();
+    End({});
+  }
+
+  void End(Result<void> end) {
+    if (std::exchange(ended_, true)) return;
+    end_ = std::move(end);
+    source_->Stop();
+    lights_.Stop();
+    signals_.cancel();
+    limit_.cancel();
+  }
+
+  const CalibrateOptions& options_;
+  boost::asio::io_context io_{1};
+  boost::asio::signal_set signals_;
+  boost::asio::steady_timer limit_;
+  Lights lights_;
+  std::unique_ptr<Source> source_;
+  std::optional<BlinkCalibration> calibration_;
+  std::vector<std::uint32_t> devices_;
+  int step_ = 0;
+  std::size_t unanswered_ = 0;
+  BlinkReport report_;
+  Result<void> end_;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Result<BlinkReport> Calibrate(const CalibrateOptions& options) {
+  return Calibrating(options).Run();
+}
+
+namespace {
+
+struct CalibrateArguments {
+  CommandLine line;
+  std::string sensor;
+};
+
+double Rounded(double value, double step) { return std::round(value / step) * step; }
+
+nlohmann::ordered_json ToJson(const BlinkReport& report) {
+  nlohmann::ordered_json spheres = nlohmann::ordered_json::array();
+  for (const BlinkReport::Sphere& one : report.spheres) {
+    const auto& blink = one.calibrated.blink;
+    const Eigen::Vector3d& c = blink.colour_dn;
+    spheres.push_back(
+        {{"role", stream::Name(one.role)},
+         {"serial", one.serial},
+         {"led", frames::ColourText(one.calibrated.led_rgb)},
+         {"colour_dn", {Rounded(c.x(), 0.1), Rounded(c.y(), 0.1), Rounded(c.z(), 0.1)}},
+         {"distance_m", one.calibrated.distance_m},
+         {"found", one.calibrated.found}});
+  }
+  return {{"spheres", spheres},
+          {"blur_px", report.profile.blur_px},
+          {"blur_sd_px", report.profile.blur_sd_px},
+          {"limb", report.profile.limb},
+          {"limb_sd", report.profile.limb_sd}};
+}
+
+Result<BlinkReport> CalibrateAndStore(const CalibrateArguments& arguments) {
+  if (const auto checked = Check(arguments.line); !checked) return checked.error();
+  auto camera = frames::ReadUncalibratedCamera(arguments.line.camera_file);
+  if (!camera) return camera.error();
+  TakeExposure(arguments.line, *camera);
+  const auto sensor = transport::AddressOrDefault(arguments.sensor, "sensor");
+  if (!sensor) return sensor.error();
+  auto report = Calibrate({*camera, arguments.line.frames, *sensor});
+  if (!report) return report;
+  frames::CameraFile calibrated = *camera;
+  calibrated.settings.profile = report->profile;
+  calibrated.spheres.clear();
+  for (const BlinkReport::Sphere& one : report->spheres) {
+    calibrated.spheres.push_back(
+        {one.role, {one.calibrated.blink.colour_dn, one.radius_m}, one.calibrated.led_rgb});
+  }
+  const auto stored = frames::StoreSpheres(arguments.line.camera_file, calibrated);
+  if (!stored) return stored.error();
+  log::Info("stored what the spheres look like in " + arguments.line.camera_file);
+  return report;
+}
+
+int RunCalibrate(const CalibrateArguments& arguments) {
+  log::Start("footing-camera", arguments.line.quiet);
+  const auto report = CalibrateAndStore(arguments);
+  if (!report) return cli::Report(report.error());
+  const nlohmann::ordered_json object = ToJson(*report);
+  if (arguments.line.json) {
+    std::cout << object << std::endl;
+    return 0;
+  }
+  for (const auto& sphere : object["spheres"])
+    std::cout << std::string(sphere["role"]) << ": light " << std::string(sphere["led"])
+              << ", seen as " << sphere["colour_dn"] << "\n";
+  std::cout << "blur: " << object["blur_px"] << " px\nlimb darkening: " << object["limb"] << "\n";
+  return 0;
+}
+
+}  // namespace
+
+void AddCalibrateCommand(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand(
+      "calibrate",
+      "Find the spheres of the PS Moves by their lights, and store what they look like");
+  const auto arguments = std::make_shared<CalibrateArguments>();
+  AddCommandLine(*command, arguments->line);
+  command->add_option("--sensor", arguments->sensor,
+                      "Address of footingd, unix:PATH or tcp:HOST:PORT");
+  command->callback([arguments, &exit_code] { exit_code = RunCalibrate(*arguments); });
+}
+
+namespace {
+
+constexpr std::uint32_t kAnswerWithinMs = 3000;
+
+transport::ClientOptions OptionsFor(const transport::Address& address) {
+  transport::ClientOptions options;
+  options.address = address;
+  options.client_name = "footing-camera";
+  options.role = v1::ROLE_CONTROL;
+  options.channels = {"status"};
+  options.max_hz = 10;
+  return options;
+}
+
+}  // namespace
+
+Lights::Lights(boost::asio::io_context& io, const transport::Address& address,
+               std::function<void()> on_devices)
+    : on_devices_(std::move(on_devices)),
+      client_(io, OptionsFor(address),
+              {.on_welcome = [](const v1::Welcome&) {},
+               .on_tick = [this](const v1::Tick& tick) { OnTick(tick); },
+               .on_gap = [](const v1::Gap&) {},
+               .on_state = [this](transport::LinkState, const std::string& why) { link_ = why; }}) {
+}
+
+void Lights::OnTick(const v1::Tick& tick) {
+  if (!tick.has_status()) return;
+  moves_.clear();
+  for (const v1::DeviceStatus& one : tick.status().devices()) {
+    stream::DeviceStatus device = wire::FromProto(one);
+    if (device.kind == stream::DeviceKind::kPsMove && device.state != stream::DeviceState::kLost &&
+        frames::CanHoldSphere(device.role))
+      moves_.push_back(std::move(device));
+  }
+  std::stable_sort(moves_.begin(), moves_.end(),
+                   [](const auto& a, const auto& b) { return a.role < b.role; });
+  has_list_ = true;
+  on_devices_();
+}
+
+void Lights::Set(std::uint32_t device, std::uint32_t rgb, std::function<void(Result<void>)> done) {
+  v1::Command command;
+  command.set_deadline_ms(kAnswerWithinMs);
+  command.mutable_set_sphere()->set_device(device);
+  command.mutable_set_sphere()->set_rgb(rgb);
+  client_.Send(std::move(command), [done = std::move(done)](const v1::CommandResult& result) {
+    done(result.ok() ? Result<void>() : Failure(result.message()));
+  });
 }
 
 }  // namespace footing::camera

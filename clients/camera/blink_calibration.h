@@ -1,12 +1,21 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <boost/asio/io_context.hpp>
+
+#include "clients/camera/video_port.h"
 #include "common/base/result.h"
-#include "common/camera/blink.h"
 #include "common/camera/find.h"
+#include "common/camera/image.h"
+#include "common/net/address.h"
+#include "common/net/client.h"
+#include "common/stream/device.h"
 
 namespace footing::camera {
 
@@ -68,6 +77,59 @@ class BlinkCalibration {
   std::vector<sphere::Finder> finder_;  ///< Of the last step; at most one.
   std::vector<std::vector<sphere::Estimate>> estimates_;
   std::string message_;
+};
+
+struct CalibrateOptions {
+  frames::CameraFile camera;  ///< Its spheres are replaced; their radii stay.
+  FrameOptions frames;
+  transport::Address sensor;  ///< footingd's client socket, where lights are switched.
+};
+
+/// What a calibration found: one for each PS Move with a role.
+struct BlinkReport {
+  struct Sphere {
+    stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+    std::string serial;
+    double radius_m = 0;
+    CalibratedSphere calibrated;
+  };
+  std::vector<Sphere> spheres;
+  sphere::Profile profile;
+};
+
+/// Switches the lights of the PS Moves through footingd, and finds out from the frames what each
+/// looks like. Afterwards they are lit as they are to be tracked. NoDevice without footingd or a
+/// PS Move.
+Result<BlinkReport> Calibrate(const CalibrateOptions& options);
+
+/// The lights of the PS Moves that footingd has, switched through its client socket as footing-ctl
+/// led does. Everything runs on the io_context's thread.
+class Lights {
+ public:
+  /// `on_devices` is called for every list of devices, about once a second and at every change.
+  Lights(boost::asio::io_context& io, const transport::Address& address,
+         std::function<void()> on_devices);
+
+  void Start() { client_.Start(); }
+  void Stop() { client_.Stop(); }
+
+  /// PS Moves that are there and have a role, in the order of their roles.
+  const std::vector<stream::DeviceStatus>& moves() const { return moves_; }
+  /// Whether a list of devices has come; else `link()` says why not.
+  bool has_list() const { return has_list_; }
+  const std::string& link() const { return link_; }
+
+  /// Sets one light, 0xRRGGBB; `done` gets footingd's refusal.
+  void Set(std::uint32_t device, std::uint32_t rgb, std::function<void(Result<void>)> done);
+
+ private:
+  void OnTick(const v1::Tick& tick);
+
+  std::function<void()> on_devices_;
+  std::vector<stream::DeviceStatus> moves_;
+  bool has_list_ = false;
+  std::string link_ = "not connected";
+  transport::Client client_;
 };
 
 }  // namespace footing::camera

@@ -3,15 +3,85 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "clients/camera/challenge.h"
-#include "common/frames/camera_file.h"
 #include "common/base/result.h"
 #include "common/camera/find.h"
+#include "common/frames/camera_file.h"
 #include "common/stream/device.h"
 
 namespace footing::camera {
+
+/// Makes sure that what is seen as a sphere is the one whose light is switched, and no lamp of its
+/// colour. In doubt the light goes out: what stays lit is refused, and its place in the image is
+/// left out for a while; what goes out and comes back is accepted. A sphere is in doubt when it
+/// appears or jumps; one that was accepted and reappears where a hand can have taken it is not.
+/// It has no clock and switches nothing itself.
+class Challenge {
+ public:
+  enum class Step {
+    kIdle,  ///< Nothing to be seen, or it was checked a moment ago.
+    kDark,  ///< Its light goes out.
+    kBack,  ///< Its light is on again.
+    kAccepted,
+  };
+
+  /// What the finder saw of the sphere in a frame.
+  void Take(const std::optional<sphere::Estimate>& seen, std::int64_t exposed_ns);
+  /// The light has been set as `is_dark` says, since then; frames of earlier show the one before.
+  void LightIsSet(std::int64_t now_ns);
+  /// The light cannot be set: no challenge, everything is accepted.
+  void LightFailed();
+
+  /// Whether the light must be out now.
+  bool is_dark() const { return step_ == Step::kDark; }
+  /// Grows whenever the light is to be set.
+  int switches() const { return switches_; }
+  /// Whether what the last frame showed is the sphere.
+  bool accepts() const { return step_ == Step::kAccepted; }
+  Step step() const { return step_; }
+  /// Places in the image that the finder must leave out now.
+  std::vector<sphere::Circle> refused() const;
+
+  int passed() const { return passed_; }      ///< Challenges that a sphere passed.
+  int refusals() const { return refusals_; }  ///< Lights that did not follow.
+  std::string TakeMessage();                  ///< For the log; empty: nothing new.
+
+ private:
+  struct Seen {
+    Eigen::Vector3d p_C_m;
+    sphere::Circle circle;
+    std::int64_t exposed_ns;
+  };
+  struct Refused {
+    sphere::Circle circle;
+    std::int64_t until_ns;
+  };
+
+  void TakeDoubtful(const std::optional<Seen>& seen, std::int64_t now_ns);
+  void TakeDark(const std::optional<Seen>& seen, std::int64_t now_ns);
+  void TakeBack(const std::optional<Seen>& seen, std::int64_t now_ns);
+  void Begin(Step step);
+  void Refuse(const sphere::Circle& circle, std::int64_t now_ns);
+  void DropOld(std::int64_t now_ns);
+  bool IsNear(const Seen& seen) const;
+
+  Step step_ = Step::kIdle;
+  bool is_unchecked_ = false;
+  int switches_ = 0;
+  int frames_ = 0;  ///< Of this step, that count towards its end.
+  int passed_ = 0, refusals_ = 0, dark_refusals_ = 0;
+  std::optional<Seen> trusted_;  ///< Where it was seen last, accepted.
+  std::optional<std::int64_t> began_ns_, settled_ns_;
+  std::int64_t not_before_ns_ = 0;
+  std::vector<Refused> refused_;
+  std::string message_;
+};
+
+/// How long after footingd's answer a frame may still show the light before: footingd sends a
+/// Move's light ten times a second at most; then come the radio and an exposure.
+inline constexpr std::int64_t kLightDelayNs = 400'000'000;
 
 /// How the light of one sphere stands, for a person.
 struct LightVerdict {

@@ -1,11 +1,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "clients/camera/command_line.h"
 #include "clients/camera/tracking.h"
+#include "clients/camera/video_port.h"
 #include "common/cli/cli.h"
+#include "common/net/address.h"
 #include "common/runtime/log.h"
-#include "common/net/address_or_default.h"
 
 namespace {
 

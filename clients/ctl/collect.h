@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "clients/ctl/report/facts.h"
+#include "clients/ctl/report/parse.h"
 
 namespace footing::ctl {
 

@@ -1,16 +1,23 @@
 #include "clients/ctl/guided.h"
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <utility>
+
 #include <poll.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <iostream>
-#include <utility>
-
-#include "common/runtime/clock.h"
+#include "clients/ctl/commands.h"
+#include "common/base/text.h"
+#include "common/base/units.h"
+#include "common/board/layout.h"
+#include "common/cli/cli.h"
 #include "common/frames/camera_file.h"
 #include "common/guide/set_up.h"
-#include "common/base/utc.h"
+#include "common/runtime/clock.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {
@@ -267,6 +274,246 @@ std::vector<stream::SetupItem> ItemsOf(const Session& session, const std::string
     if (one.rig == rig) recorded = one.items;
   }
   return guide::Merged(recorded, results, DevicesOf(session, rig));
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// "2026-11-21T10:30:00Z"; empty when there is none.
+std::string Date(std::int64_t wall_time_ns) {
+  if (wall_time_ns <= 0) return "";
+  return text::Utc(wall_time_ns);
+}
+
+std::string RoundedText(double value) {
+  const double rounded = std::round(value * 100) / 100;
+  return ordered_json(rounded).dump();
+}
+
+}  // namespace
+
+ordered_json ToJson(const stream::SetupItem& item) {
+  return {{"name", item.name},         {"serial", item.serial}, {"passed", item.passed},
+          {"residual", item.residual}, {"unit", item.unit},     {"date", Date(item.wall_time_ns)},
+          {"stale", item.stale},       {"note", item.note}};
+}
+
+std::string ToText(const stream::SetupItem& item) {
+  std::string text = item.name;
+  if (!item.serial.empty()) text += " " + item.serial;
+  text += item.passed ? (item.stale ? ": stale" : ": ok") : ": FAILED";
+  if (!item.unit.empty()) text += ", " + RoundedText(item.residual) + " " + item.unit;
+  if (!item.note.empty()) text += ", " + item.note;
+  return text;
+}
+
+Result<void> PrintItems(const Session& session, const std::string& rig,
+                        const std::vector<stream::SetupItem>& items, bool need_ready,
+                        const Shared& shared) {
+  std::vector<std::string> missing;
+  const bool ready = guide::Ready(items, DevicesOf(session, rig), &missing);
+  ordered_json out{{"rig", rig}, {"items", ordered_json::array()}, {"ready", ready}};
+  std::string text = "rig " + rig + (ready ? " is ready" : " is not ready");
+  for (const auto& item : items) {
+    out["items"].push_back(ToJson(item));
+    text += "\n  " + Date(item.wall_time_ns) + "  " + ToText(item);
+  }
+  out["missing"] = missing;
+  if (!missing.empty()) text += "\nmissing:";
+  for (const std::string& one : missing) text += "\n  " + one;
+  Print(out, text, shared);
+  if (need_ready && !ready) return Failure("rig " + rig + " is not ready; " + missing.front());
+  return {};
+}
+
+Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>& names) {
+  std::vector<stream::DeviceRole> roles;
+  for (const std::string& name : names) {
+    const stream::DeviceRole role = stream::RoleNamed(name);
+    if (role == stream::DeviceRole::kLeftBoard || role == stream::DeviceRole::kRightBoard ||
+        role == stream::DeviceRole::kUnspecified) {
+      return UsageError("--worn " + name +
+                        ": not a role of a remote; must be one of: left_hand right_hand left_leg "
+                        "right_leg head trunk editor left_upper_arm right_upper_arm left_forearm "
+                        "right_forearm");
+    }
+    if (std::find(roles.begin(), roles.end(), role) != roles.end()) {
+      return UsageError("--worn names " + name + " twice");
+    }
+    roles.push_back(role);
+  }
+  return roles;
+}
+
+Result<void> AssignByGesture(Session& session, const std::string& rig,
+                             const std::vector<stream::DeviceRole>& body_roles, bool script,
+                             const Shared& shared) {
+  guide::SetUpOptions options;
+  options.rig = rig;
+  options.body_roles = body_roles;
+  const auto results = RunGuided(session, options, {guide::Item::kRoles}, PromptOptions{script});
+  if (!results) return results.error();
+  if (results->empty()) return NoDevice("rig " + rig + " has no device; see footing-ctl devices");
+  nlohmann::ordered_json out{{"rig", rig}, {"items", nlohmann::ordered_json::array()}};
+  std::string text;
+  for (const auto& item : *results) {
+    out["items"].push_back(ToJson(item));
+    text += (text.empty() ? "" : "\n") + ToText(item);
+  }
+  Print(out, text, shared);
+  for (const auto& item : *results) {
+    if (!item.passed) return Failure(ToText(item));
+  }
+  return {};
+}
+
+namespace {
+
+struct SetUpArguments {
+  guide::SetUpOptions options;
+  std::vector<std::string> only;
+  std::vector<std::string> body_roles;
+  double mass_kg = 0;
+  bool yes = false;
+  bool script = false;
+};
+
+constexpr double kScriptSettleS = 2;
+constexpr double kEffectsSeenS = 1.2;
+
+/// The camera's sphere that is held on the marks: the first of its file.
+Result<void> TakeCamera(SetUpArguments& arguments, const std::vector<guide::Item>& items) {
+  const bool is_named = std::find(items.begin(), items.end(), guide::Item::kCamera) != items.end();
+  if (arguments.options.camera_file.empty()) {
+    if (!is_named) return {};
+    return UsageError("--only camera needs --camera FILE, the file that footing-camera runs with");
+  }
+  const auto camera = frames::ReadCameraFile(arguments.options.camera_file);
+  if (!camera) return camera.error();
+  arguments.options.camera_role = camera->spheres.front().role;
+  arguments.options.camera_radius_m = camera->spheres.front().target.radius_m;
+  return {};
+}
+
+/// The items that the arguments name; UsageError when they contradict each other.
+Result<std::vector<guide::Item>> Validate(SetUpArguments& arguments) {
+  std::vector<guide::Item> items;
+  for (const std::string& name : arguments.only) {
+    const auto item = guide::ItemNamed(name);
+    if (!item) {
+      std::string known;
+      for (const guide::Item one : guide::AllItems()) known += std::string(" ") + guide::Name(one);
+      return UsageError("--only " + name + ": no such item; must be one of:" + known);
+    }
+    items.push_back(*item);
+  }
+  auto roles = BodyRoles(arguments.body_roles);
+  if (!roles) return roles.error();
+  arguments.options.body_roles = std::move(roles).value();
+  if (!arguments.options.preset.empty() && !board::LayoutNamed(arguments.options.preset, 0)) {
+    return UsageError("--preset " + arguments.options.preset +
+                      ": no such layout; must be one of: one_foot_each side_by_side single");
+  }
+  if (const auto camera = TakeCamera(arguments, items); !camera) return camera.error();
+  if (arguments.mass_kg > 0) arguments.options.mass_kg = arguments.mass_kg;
+  if (arguments.script || arguments.yes) arguments.options.settle_s = kScriptSettleS;
+  return items;
+}
+
+/// An item that was asked for by name, and for which the rig has no device, was not done.
+Result<void> AllDone(const std::vector<guide::Item>& items,
+                     const std::vector<stream::SetupItem>& results, const std::string& rig) {
+  for (const guide::Item item : items) {
+    const std::string name = guide::Name(item);
+    const bool done = std::any_of(results.begin(), results.end(),
+                                  [&](const stream::SetupItem& one) { return one.name == name; });
+    if (!done) {
+      return NoDevice("--only " + name + ": nothing done, rig " + rig +
+                      " has no attached device for it; footing-ctl devices lists them");
+    }
+  }
+  return {};
+}
+
+Result<void> Setup(Session& session, const SetUpArguments& arguments,
+                   const std::vector<guide::Item>& items, const Shared& shared) {
+  const auto results =
+      RunGuided(session, arguments.options, items, PromptOptions{arguments.script});
+  if (!results) return results.error();
+  // So that the last answers' effects on the devices are seen.
+  session.RunFor(kEffectsSeenS);
+  const auto list = ItemsOf(session, arguments.options.rig, *results);
+  const bool whole = items.empty();
+  if (const auto printed = PrintItems(session, arguments.options.rig, list, whole, shared);
+      !printed) {
+    return printed;
+  }
+  for (const auto& result : *results) {
+    if (!result.passed) return Failure(ToText(result));
+  }
+  return AllDone(items, *results, arguments.options.rig);
+}
+
+}  // namespace
+
+void AddSetupCommand(CLI::App& app, Shared& shared) {
+  const auto arguments = std::make_shared<SetUpArguments>();
+  CLI::App* command =
+      app.add_subcommand("setup",
+                         "Guided setup of a rig: adapter, pairing, roles, layout, tare, "
+                         "mounting, weigh, camera, checks");
+  command->add_option("--rig", arguments->options.rig,
+                      "Rig: the devices of one person (default main)");
+  command
+      ->add_option("--only", arguments->only, "Item to run; may be repeated (default: all items)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--worn", arguments->body_roles,
+          "Roles of the remotes, such as left_leg,right_leg (default: their present roles)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option(
+      "--preset", arguments->options.preset,
+      "Layout of the boards: one_foot_each, side_by_side or single (default: the recorded one)");
+  command
+      ->add_option("--gap-mm", arguments->options.gap_mm, "Gap between the boards, mm (default 20)")
+      ->check(CLI::Range(0.0, 2000.0));
+  command
+      ->add_option("--mass-kg", arguments->mass_kg,
+                   "Mass of the person, kg, to compare the weighing with (default: not compared)")
+      ->check(CLI::Range(10.0, 200.0));
+  command
+      ->add_option("--patience", arguments->options.patience_s,
+                   "Timeout of an item, s (default 60)")
+      ->check(CLI::Range(1.0, 3600.0));
+  command->add_option("--tries", arguments->options.tries, "Attempts for each item (default 2)")
+      ->check(CLI::Range(1, 10));
+  command->add_option("--camera", arguments->options.camera_file,
+                      "Camera file of the running footing-camera, whose pose is calibrated");
+  command->add_flag("--yes", arguments->yes,
+                    "Do not wait for Enter at steps that no sensor can confirm");
+  command->add_flag(
+      "--script", arguments->script,
+      "Print prompts as lines PROMPT: ... on standard error, for a program that drives "
+      "the devices");
+  command->footer(
+      "Items, in order: adapter pairing roles layout tare mounting weigh camera checks\n"
+      "Examples:\n  footing-ctl setup --worn left_leg,right_leg\n"
+      "  footing-ctl setup --only layout --only tare      # two items alone\n"
+      "  footing-ctl setup --only camera --camera camera.json   # while footing-camera runs\n"
+      "  footing-ctl setup --mass-kg 70 --json");
+  command->callback([arguments, &shared] {
+    const auto items = Validate(*arguments);
+    if (!items) {
+      shared.exit_code = cli::Report(items.error());
+      return;
+    }
+    WithSession(shared, GuidedChannels(),
+                [&](Session& session) { return Setup(session, *arguments, *items, shared); });
+  });
 }
 
 }  // namespace footing::ctl

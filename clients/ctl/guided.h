@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "clients/ctl/commands.h"
+#include "common/guide/camera_step.h"
 #include "common/guide/recent.h"
-#include "common/guide/step.h"
 #include "common/stream/setup.h"
 
 namespace footing::ctl {
@@ -44,5 +44,14 @@ std::string ToText(const stream::SetupItem& item);
 Result<void> PrintItems(const Session& session, const std::string& rig,
                         const std::vector<stream::SetupItem>& items, bool need_ready,
                         const Shared& shared);
+
+/// Roles of --worn. UsageError for an unknown role, a board's role, or one that comes twice.
+Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>& names);
+
+/// `assign --gesture`: "Step on the left board now.", "Shake the left wrist now." The session needs
+/// GuidedChannels().
+Result<void> AssignByGesture(Session& session, const std::string& rig,
+                             const std::vector<stream::DeviceRole>& body_roles, bool script,
+                             const Shared& shared);
 
 }  // namespace footing::ctl

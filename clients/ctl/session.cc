@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "clients/ctl/report/find_device.h"
-#include "common/runtime/clock.h"
+#include "clients/ctl/report/device_table.h"
+#include "common/net/address.h"
 #include "common/net/client.h"
-#include "common/net/run_folder.h"
+#include "common/runtime/clock.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {

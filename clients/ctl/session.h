@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/net/address.h"
+#include "common/runtime/timer.h"
 #include "common/stream/device.h"
 #include "common/stream/server_stats.h"
 #include "common/stream/setup.h"
-#include "common/runtime/run_until.h"
-#include "common/net/address.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::ctl {

@@ -2,12 +2,58 @@
 
 #include <string>
 
-#include "clients/game/report.h"
 #include "clients/game/rules/director.h"
 #include "common/base/result.h"
 #include "common/net/address.h"
+#include "common/recording/recorded_session.h"
+#include "common/stream/game.h"
+#include "footing/v1/command.pb.h"
+#include "footing/v1/session.pb.h"
 
+/// Between the game's rules and the messages of the protocol.
 namespace footing::game {
+
+/// Takes in what a tick of footing-sim reports of trials.
+void Take(const v1::Tick& tick, Collector& collector);
+
+/// The tick's last word on the device of the role editor, of the first rig by name whose editor
+/// sends samples; `hand` stays where the tick says nothing. True when the tick knows how it is
+/// inclined.
+bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand);
+
+/// What a tick of footing-sim with a character reports of it.
+Frame FrameOf(const v1::Tick& tick);
+
+v1::Command ToCommand(const Piece& piece);
+
+/// What a game has come to.
+struct Report {
+  stream::GameState game;
+  std::uint64_t slopes = 0, curves = 0, steps = 0, pits = 0;  ///< Segments laid that have one.
+  double seconds = 0;
+};
+
+/// Counts the segments of the game's rounds by what they are.
+Report MakeReport(const stream::GameState& game, const Collector& seen, double seconds);
+
+std::string ToJson(const Report& report);
+
+/// The game in one line: "round 1 of 2  12 s left  Ann runs 23.4 m ...".
+std::string ToLine(const stream::GameState& game);
+
+/// Each round and the winner, a line each.
+std::string ToText(const Report& report);
+
+/// The last game of a recording, as published, and with its scores counted again from what
+/// footing-sim published beside them.
+struct Recount {
+  Report published;
+  Report counted;
+  bool equal = false;  ///< Those of all rounds that ended are, to the last bit.
+};
+
+/// InvalidData when the recording has no game.
+Result<Recount> RecountGame(const recording::RecordedSession& session);
 
 struct HostOptions {
   GameOptions game;

@@ -3,10 +3,9 @@
 #include <iostream>
 
 #include "clients/game/host.h"
-#include "clients/game/recount.h"
 #include "common/cli/cli.h"
+#include "common/net/address.h"
 #include "common/runtime/log.h"
-#include "common/net/address_or_default.h"
 
 namespace {
 

@@ -1,24 +1,43 @@
 #include "clients/log/commands.h"
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "clients/log/export_bids.h"
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <nlohmann/json.hpp>
+
+#include "clients/log/contents.h"
 #include "clients/log/export_bodies.h"
-#include "clients/log/export_csv.h"
 #include "clients/log/export_xdf.h"
-#include "clients/log/output_folder.h"
-#include "clients/log/record.h"
-#include "common/body/angle_deviation.h"
-#include "common/cli/cli.h"
-#include "common/recording/repair.h"
 #include "common/base/json_text.h"
+#include "common/base/text.h"
+#include "common/base/units.h"
+#include "common/body/angle_deviation.h"
+#include "common/camera/camera_pose.h"
+#include "common/cli/cli.h"
+#include "common/frames/camera_file.h"
 #include "common/net/address.h"
+#include "common/recording/mcap_reader.h"
+#include "common/recording/mcap_writer.h"
+#include "common/recording/recording_server.h"
+#include "common/recording/recording_writer.h"
+#include "common/recording/repair.h"
+#include "common/recording/stream_recorder.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/files.h"
+#include "common/runtime/timer.h"
+#include "common/wire/wire.h"
+#include "footing/v1/sensor.pb.h"
 
 namespace footing::log_client {
 namespace {
@@ -263,6 +282,606 @@ void AddRepairCommand(CLI::App& app, Shared& shared) {
   command->add_option("--out", *out, "Output file, MCAP")->required();
   command->add_flag("--force", *replace, "Overwrite an existing file");
   command->callback([=, &shared] { Finish(RunRepair(*in, *out, *replace), shared); });
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+double SecondsBetween(std::uint64_t from_ns, std::uint64_t to_ns) {
+  return to_ns <= from_ns ? 0 : NanosecondsToSeconds(static_cast<std::int64_t>(to_ns - from_ns));
+}
+
+ordered_json ToJson(const Contents& contents) {
+  ordered_json out{
+      {"file", contents.path},
+      {"bytes", contents.bytes},
+      {"complete", contents.end.complete},
+      {"library", contents.library},
+      {"messages", contents.messages},
+      {"start_ns", contents.start_ns},
+      {"end_ns", contents.end_ns},
+      {"duration_s", SecondsBetween(contents.start_ns, contents.end_ns)},
+      {"simulated", contents.simulated ? ordered_json(*contents.simulated) : ordered_json(nullptr)},
+      {"gaps", contents.gaps},
+      {"missing_ticks", contents.missing_ticks},
+      {"missing_s", contents.missing_s},
+      {"restarts", contents.restarts},
+      {"restart_s", contents.restart_s}};
+  if (!contents.end.complete) {
+    out["problem"] = contents.end.problem;
+    out["problem_byte"] = contents.end.problem_offset;
+  }
+  out["topics"] = ordered_json::array();
+  for (const Topic& topic : contents.topics) {
+    out["topics"].push_back({{"topic", topic.name},
+                             {"schema", topic.schema},
+                             {"messages", topic.messages},
+                             {"rate_hz", topic.RateHz()},
+                             {"start_s", SecondsBetween(contents.start_ns, topic.first_ns)},
+                             {"end_s", SecondsBetween(contents.start_ns, topic.last_ns)}});
+  }
+  out["configs"] = ordered_json::array();
+  for (const std::string& config : contents.configs) {
+    auto parsed = ordered_json::parse(config, nullptr, /*allow_exceptions=*/false);
+    out["configs"].push_back(parsed.is_discarded() ? ordered_json() : std::move(parsed));
+  }
+  out["attachments"] = ordered_json::array();
+  for (const AttachmentNote& attachment : contents.attachments) {
+    out["attachments"].push_back({{"name", attachment.name},
+                                  {"media_type", attachment.media_type},
+                                  {"bytes", attachment.bytes}});
+  }
+  out["metadata"] = ordered_json::array();
+  for (const mcap::Metadata& metadata : contents.metadata) {
+    out["metadata"].push_back({{"name", metadata.name}, {"values", metadata.values}});
+  }
+  return out;
+}
+
+/// One line of what stands out in an effective config; its values are printed with --json.
+void PrintConfig(const std::string& text) {
+  using Path = ordered_json::json_pointer;
+  const ordered_json config = ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const auto word = [&](const char* path) {
+    const Path place(path);
+    const ordered_json value = config.contains(place) ? config[place] : ordered_json("?");
+    return value.is_string() ? value.get<std::string>() : value.dump();
+  };
+  std::cout << "  ran with: " << word("/program") << " " << word("/version") << ", engine "
+            << word("/engine");
+  if (config.contains(Path("/interface/name"))) {
+    const std::string interface = word("/interface/name");
+    std::cout << ", interface "
+              << interface << (interface == "leg" ? " turned by " + word("/interface/turn_by") : "")
+              << ", its table: " << word("/interface/table_by");
+  }
+  if (config.contains(Path("/interface/table/measured"))) {
+    std::cout << ", measured of " << word("/interface/table/measured/participants");
+  }
+  std::cout << " (all values: --json)\n";
+}
+
+/// Ticks that are missing, and the time in which there were none.
+std::string LossLine(const Contents& contents) {
+  std::string line = "gaps: " + std::to_string(contents.gaps) +
+                     ", ticks missing: " + std::to_string(contents.missing_ticks);
+  if (contents.missing_ticks > 0) line += " (" + text::Fixed(contents.missing_s, 2) + " s)";
+  if (contents.restarts > 0) {
+    line += ", and " + text::Fixed(contents.restart_s, 2) + " s without ticks over " +
+            std::to_string(contents.restarts) + " server restart" +
+            (contents.restarts == 1 ? "" : "s");
+  }
+  return line;
+}
+
+void PrintText(const Contents& contents) {
+  std::cout << contents.path << ": " << contents.bytes << " bytes, written by " << contents.library
+            << "\n"
+            << (contents.end.complete ? "complete" : "NOT COMPLETE: " + contents.end.problem)
+            << ", " << text::Fixed(SecondsBetween(contents.start_ns, contents.end_ns), 1) << " s, "
+            << contents.messages << " messages, "
+            << (!contents.simulated   ? "not said whether simulated"
+                : *contents.simulated ? "SIMULATED"
+                                      : "real devices")
+            << "\n"
+            << LossLine(contents) << "\n";
+  for (const Topic& topic : contents.topics) {
+    std::cout << "  " << topic.name << "  " << topic.messages
+              << (topic.messages == 1 ? " message  " : " messages  ");
+    if (topic.RateHz() > 0) std::cout << text::Fixed(topic.RateHz(), 1) << " Hz  ";
+    std::cout << topic.schema << "\n";
+  }
+  for (const std::string& config : contents.configs) PrintConfig(config);
+  for (const AttachmentNote& attachment : contents.attachments) {
+    std::cout << "  attached: " << attachment.name << " (" << attachment.bytes << " bytes)\n";
+  }
+  for (const mcap::Metadata& metadata : contents.metadata) {
+    std::cout << "  " << metadata.name << ":";
+    for (const auto& [key, value] : metadata.values) std::cout << " " << key << "=" << value;
+    std::cout << "\n";
+  }
+  std::cout.flush();
+}
+
+}  // namespace
+
+void AddInfoCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("info", "Print the contents of a recording");
+  const auto file = std::make_shared<std::string>();
+  command->add_option("FILE", *file, "Recording, MCAP file")->required();
+  command->callback([file, &shared] {
+    const Result<Contents> contents = ReadContents(*file);
+    if (!contents) {
+      shared.exit_code = cli::Report(contents.error());
+      return;
+    }
+    if (shared.json) {
+      std::cout << text::ToText(ToJson(*contents)) << std::endl;
+    } else {
+      PrintText(*contents);
+    }
+    if (const auto incomplete = Incomplete(*file, contents->end)) {
+      shared.exit_code = cli::Report(*incomplete);
+    }
+  });
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct RecalibrateOptions {
+  std::string in, out, camera;
+  std::string tracker = "camera";
+  bool replace = false;
+};
+
+Result<ordered_json> RunRecalibrate(const RecalibrateOptions& options) {
+  const auto camera = frames::ReadCameraFile(options.camera);
+  if (!camera) return camera.error();
+  if (!camera->X_WC)
+    return InvalidData(options.camera +
+                       " does not say where the camera is (position_W_m, rotation_WC): calibrate "
+                       "it with footing-ctl setup --only camera");
+  const auto report = Recalibrate(options.in, options.out, options.tracker, *camera->X_WC,
+                                  std::string("footing-log ") + cli::Version(), options.replace);
+  if (!report) return report.error();
+  return ordered_json{{"input", options.in},
+                      {"output", options.out},
+                      {"messages", report->messages},
+                      {"samples_recalibrated", report->samples},
+                      {"samples_unchanged", report->untouched}};
+}
+
+}  // namespace
+
+void AddRecalibrateCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand(
+      "recalibrate", "Write a copy of a recording with a new calibration applied to its hands");
+  const auto options = std::make_shared<RecalibrateOptions>();
+  command->add_option("IN", options->in, "Recording, MCAP file")->required();
+  command->add_option("--camera", options->camera, "Camera file with the new pose, JSON")
+      ->required();
+  command->add_option("--out", options->out, "Output file, MCAP")->required();
+  command->add_option("--tracker", options->tracker, "Name of the tracker (default camera)");
+  command->add_flag("--force", options->replace, "Overwrite an existing file");
+  command->callback([options, &shared] { Finish(RunRecalibrate(*options), shared); });
+}
+
+namespace {
+
+struct ServeOptions {
+  std::string file;
+  std::string server;
+  std::vector<std::string> addresses;
+};
+
+/// The server whose place is taken: the one asked for, else footingd, else the only one.
+Result<std::string> ChooseServer(const recording::RecordedSession& session,
+                                 const std::string& wanted) {
+  std::string names;
+  std::string first;
+  for (const recording::RecordedServer& server : session.servers()) {
+    if (server.ticks.empty()) continue;
+    if (server.name == wanted || (wanted.empty() && server.name == "footingd")) return server.name;
+    if (first.empty()) first = server.name;
+    names += (names.empty() ? "" : ", ") + server.name;
+  }
+  if (first.empty()) return InvalidData(session.path() + " holds no ticks of a server");
+  if (wanted.empty()) return first;
+  return UsageError(session.path() + " has no messages of " + wanted + "; there are: " + names);
+}
+
+Result<nlohmann::ordered_json> RunServe(const ServeOptions& options) {
+  const auto session = recording::RecordedSession::Open(options.file);
+  if (!session) return session.error();
+  const auto name = ChooseServer(*session, options.server);
+  if (!name) return name.error();
+  boost::asio::io_context io(1);
+  playback::RecordingServer server(io, *session, *name, cli::Version());
+  std::vector<transport::Address> addresses;
+  for (const std::string& text : options.addresses) {
+    const auto address = transport::ParseAddress(text);
+    if (!address) return address.error();
+    addresses.push_back(*address);
+  }
+  if (addresses.empty()) {
+    const bool simulation = name->starts_with("footing-sim");
+    addresses.push_back(transport::DefaultAddress(simulation ? "simulation" : "sensor", true));
+  }
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    if (const auto listening = server.Listen(addresses[i]); !listening) return listening.error();
+    std::cerr << "serving " << *name << " of " << options.file << ", " << server.duration_s()
+              << " s, on " << server.ListeningOn(i).Text() << " once a client connects"
+              << std::endl;
+  }
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  Result<void> ended;
+  bool complete = false;
+  const auto end = [&](const std::string& reason) {
+    server.Stop(reason);
+    signals.cancel();
+  };
+  signals.async_wait([&](const boost::system::error_code& error, int) {
+    if (!error) end("footing-log is being stopped");
+  });
+  server.Start([&](const Result<void>& result) {
+    ended = result;
+    complete = result.ok();
+    end(result ? "the recording has ended" : result.error().message);
+  });
+  io.run();
+  if (!ended) return InvalidData(options.file + ": " + ended.error().message);
+  return nlohmann::ordered_json{{"file", options.file},
+                                {"server", *name},
+                                {"ticks", server.published()},
+                                {"duration_s", server.duration_s()},
+                                {"complete", complete}};
+}
+
+}  // namespace
+
+void AddServeCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand(
+      "serve", "Serve a recording in place of the recorded server, at its recorded times");
+  const auto options = std::make_shared<ServeOptions>();
+  command->add_option("FILE", options->file, "Recording, MCAP file")->required();
+  command->add_option("--listen", options->addresses,
+                      "Address to listen on, unix:PATH or tcp:HOST:PORT; may be repeated (default: "
+                      "that of the server)");
+  command->add_option("--server", options->server,
+                      "Server of the recording: footingd or footing-sim (default: footingd)");
+  command->callback([options, &shared] { Finish(RunServe(*options), shared); });
+}
+
+namespace {
+
+constexpr char kHandSchema[] = "footing.v1.HandSamples";
+
+bool IsChanged(const v1::HandSample& sample, const std::string& tracker) {
+  return sample.tracker() == tracker && sample.has_tracker_pose();
+}
+
+/// Counts the hands that a Copier would change.
+class Counter {
+ public:
+  explicit Counter(const std::string& tracker) : tracker_(tracker) {}
+
+  mcap::Visitor Visitor() {
+    mcap::Visitor visitor;
+    visitor.schema = [this](const mcap::Schema& schema) {
+      if (schema.name == kHandSchema) schemas_.insert(schema.id);
+    };
+    visitor.channel = [this](const mcap::Channel& channel) {
+      if (schemas_.contains(channel.schema_id)) channels_.insert(channel.id);
+    };
+    visitor.message = [this](const mcap::Message& message) {
+      v1::HandSamples hands;
+      if (!channels_.contains(message.channel_id) ||
+          !hands.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) {
+        return;
+      }
+      for (const v1::HandSample& sample : hands.samples()) {
+        samples_ += IsChanged(sample, tracker_) ? 1 : 0;
+      }
+    };
+    return visitor;
+  }
+
+  std::uint64_t samples() const { return samples_; }
+
+ private:
+  const std::string tracker_;
+  std::set<std::uint16_t> schemas_, channels_;
+  std::uint64_t samples_ = 0;
+};
+
+/// Copies what it is shown, and changes the hands.
+class Copier {
+ public:
+  Copier(recording::OutputFile& file, const std::string& tracker, const Eigen::Isometry3d& X_WC,
+         const std::string& library)
+      : file_(file), tracker_(tracker), X_WC_(X_WC), writer_({"", library}, {}) {}
+
+  mcap::Visitor Visitor() {
+    mcap::Visitor visitor;
+    visitor.schema = [this](const mcap::Schema& schema) { Copy(schema); };
+    visitor.channel = [this](const mcap::Channel& channel) { Copy(channel); };
+    visitor.message = [this](const mcap::Message& message) { Copy(message); };
+    visitor.attachment = [this](const mcap::Attachment& attachment) {
+      writer_.Add(attachment);
+      WriteDown();
+    };
+    visitor.metadata = [this](const mcap::Metadata& metadata) { writer_.Add(metadata); };
+    return visitor;
+  }
+
+  Result<RecalibrateReport> Finish() {
+    writer_.Finish();
+    WriteDown();
+    if (!written_) return written_.error();
+    if (const auto synced = file_.Sync(); !synced) return synced.error();
+    return report_;
+  }
+
+ private:
+  void Copy(const mcap::Schema& schema) {
+    if (schema.name == kHandSchema) hand_schemas_.insert(schema.id);
+    writer_.CopySchema(schema);
+  }
+
+  void Copy(const mcap::Channel& channel) {
+    if (hand_schemas_.contains(channel.schema_id)) hand_channels_.insert(channel.id);
+    writer_.CopyChannel(channel);
+  }
+
+  void Copy(mcap::Message message) {
+    ++report_.messages;
+    std::string changed;
+    v1::HandSamples hands;
+    if (hand_channels_.contains(message.channel_id) &&
+        hands.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) {
+      for (v1::HandSample& sample : *hands.mutable_samples()) Change(sample);
+      changed = hands.SerializeAsString();
+      message.data = changed;
+    }
+    writer_.Add(message);
+    WriteDown();
+  }
+
+  void Change(v1::HandSample& sample) {
+    if (!IsChanged(sample, tracker_)) {
+      ++report_.untouched;
+      return;
+    }
+    ++report_.samples;
+    sample = wire::ToProto(camera_pose::Recalibrated(wire::FromProto(sample), X_WC_));
+  }
+
+  void WriteDown() {
+    const std::string bytes = writer_.Take();
+    if (written_ && !bytes.empty()) written_ = file_.Write(bytes);
+  }
+
+  recording::OutputFile& file_;
+  const std::string tracker_;
+  const Eigen::Isometry3d X_WC_;
+  mcap::Writer writer_;
+  std::set<std::uint16_t> hand_schemas_, hand_channels_;
+  RecalibrateReport report_;
+  Result<void> written_;
+};
+
+}  // namespace
+
+Result<RecalibrateReport> Recalibrate(const std::string& input, const std::string& output,
+                                      const std::string& tracker, const Eigen::Isometry3d& X_WC,
+                                      const std::string& library, bool replace) {
+  const auto in = recording::MappedFile::Open(input);
+  if (!in) return in.error();
+  std::error_code error;
+  if (std::filesystem::equivalent(input, output, error))
+    return UsageError("the new recording may not replace " + input + "; name another with --out");
+  Counter counter(tracker);
+  const mcap::WalkEnd found = mcap::Walk(in->bytes(), counter.Visitor(), mcap::WalkMode::kStrict);
+  if (!found.complete)
+    return InvalidData(input + ": " + found.problem + "; repair it first: footing-log repair " +
+                       input + " --out whole.mcap");
+  if (counter.samples() == 0)
+    return InvalidData(input + " has no hands of the tracker \"" + tracker +
+                       "\" with what it saw in its own frame");
+  auto out = recording::OutputFile::Create(output, replace);
+  if (!out) return out.error();
+  Copier copier(*out, tracker, X_WC, library);
+  mcap::Walk(in->bytes(), copier.Visitor(), mcap::WalkMode::kStrict);
+  return copier.Finish();
+}
+
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr auto kFlushPeriod = std::chrono::milliseconds(50);
+constexpr auto kCatchUpPeriod = std::chrono::milliseconds(5);
+constexpr std::int64_t kLongestCatchUpNs = 2'000'000'000;
+constexpr auto kProgressPeriod = std::chrono::seconds(5);
+constexpr std::size_t kMostAttachmentBytes = 16u << 20;
+
+/// One recording: the file, the links to its servers, and the timers.
+class Recording {
+ public:
+  Recording(asio::io_context& io, recording::RecordingWriter writer, const RecordOptions& options)
+      : io_(io),
+        options_(options),
+        writer_(std::move(writer)),
+        flush_(io),
+        progress_(io),
+        end_(io),
+        signals_(io, SIGINT, SIGTERM) {}
+
+  Result<RecordReport> Run() {
+    Keep(
+        recording::DescribeRecording(writer_, "footing-log", options_.version, options_.addresses));
+    for (const std::string& path : options_.attachments) Keep(Attach(path));
+    if (!written_) return written_.error();
+    for (const transport::Address& address : options_.addresses) Link(address);
+    for (const auto& link : links_) link->Start();
+    signals_.async_wait([this](const boost::system::error_code& error, int) {
+      if (!error) CatchUp(clock::MonotonicNs());
+    });
+    if (options_.seconds > 0) {
+      end_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
+          std::chrono::duration<double>(options_.seconds)));
+      end_.async_wait([this](const boost::system::error_code& error) {
+        if (!error) CatchUp(clock::MonotonicNs());
+      });
+    }
+    FlushLater();
+    ProgressLater();
+    io_.run();
+    return Finish();
+  }
+
+ private:
+  Result<void> Attach(const std::string& path) {
+    const Result<std::string> bytes = config::ReadTextFile(path, kMostAttachmentBytes);
+    if (!bytes) return bytes.error();
+    const std::filesystem::path name(path);
+    const bool json = name.extension() == ".json";
+    return writer_.Attach(name.filename().string(),
+                          json ? "application/json" : "application/octet-stream", *bytes,
+                          clock::MonotonicNs());
+  }
+
+  void Link(const transport::Address& address) {
+    recording::ServerRecorderOptions server;
+    server.address = address;
+    server.client_name = "footing-log";
+    server.from_ring_start = options_.from_ring;
+    server.on_written = [this](Result<void> written) { Keep(std::move(written)); };
+    server.on_link = [](const recording::StreamRecorder& recorder) {
+      std::cerr << recorder.address() << ": " << recorder.link() << std::endl;
+    };
+    server.on_notice = [](const recording::StreamRecorder& recorder) {
+      std::cerr << recorder.address() << ": notice: " << recorder.notice() << std::endl;
+    };
+    links_.push_back(
+        std::make_unique<recording::ServerRecorder>(io_, writer_, names_, std::move(server)));
+  }
+
+  /// Remembers the first failure of the file, and ends.
+  void Keep(Result<void> written) {
+    if (!written && written_) {
+      written_ = std::move(written);
+      End();
+    }
+  }
+
+  void FlushLater() {
+    flush_.expires_after(kFlushPeriod);
+    flush_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      const std::int64_t now_ns = clock::MonotonicNs();
+      if (!writer_.pending()) written_down_ns_ = now_ns;
+      if (now_ns - written_down_ns_ >= recording::kLongestUnwrittenNs) {
+        Keep(writer_.Flush());
+        written_down_ns_ = now_ns;
+      }
+      FlushLater();
+    });
+  }
+
+  void ProgressLater() {
+    progress_.expires_after(kProgressPeriod);
+    progress_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      std::cerr << writer_.path() << ": " << writer_.statistics().message_count << " messages";
+      for (const auto& link : links_) {
+        const recording::StreamRecorder& recorder = link->recorder();
+        std::cerr << ", " << recorder.address() << " " << recorder.ticks() << " ticks";
+        if (recorder.missing_ticks() > 0) {
+          std::cerr << " (" << recorder.missing_ticks() << " missing)";
+        }
+      }
+      std::cerr << std::endl;
+      ProgressLater();
+    });
+  }
+
+  /// Ends once everything has come that was sent up to then, or soon.
+  void CatchUp(std::int64_t until_ns) {
+    const bool has_all = std::all_of(links_.begin(), links_.end(),
+                                     [&](const auto& link) { return link->HasAllUntil(until_ns); });
+    if (has_all || clock::MonotonicNs() - until_ns > kLongestCatchUpNs) return End();
+    end_.expires_after(kCatchUpPeriod);
+    end_.async_wait([this, until_ns](const boost::system::error_code& error) {
+      if (!error) CatchUp(until_ns);
+    });
+  }
+
+  void End() {
+    for (const auto& link : links_) link->Stop();
+    io_.stop();
+  }
+
+  Result<RecordReport> Finish() {
+    if (!written_) {
+      return Failure(written_.error().message +
+                     (writer_.empty() ? "; nothing was recorded"
+                                      : "; what was written before is kept: footing-log repair " +
+                                            writer_.path() + " --out NEW.mcap"));
+    }
+    RecordReport report;
+    std::string waited_for;
+    bool any_reached = false;
+    for (const auto& link : links_) {
+      if (const Result<void> ended = link->End(); !ended) return ended.error();
+      const recording::StreamRecorder& recorder = link->recorder();
+      report.ticks += recorder.ticks();
+      report.missing_ticks += recorder.missing_ticks();
+      waited_for +=
+          (waited_for.empty() ? "" : ", ") + recorder.address() + " (" + recorder.link() + ")";
+      any_reached = any_reached || recorder.reached();
+    }
+    const mcap::Statistics& statistics = writer_.statistics();
+    if (statistics.message_count == 0) {
+      const std::string why =
+          "nothing came to record from " + waited_for + "; " + writer_.path() + " was not written";
+      return any_reached ? Failure(why)
+                         : NoDevice(why + "; start the server, or name it with --connect");
+    }
+    if (const Result<void> finished = writer_.Finish(); !finished) return finished.error();
+    report.messages = statistics.message_count;
+    report.duration_s = 1e-9 * static_cast<double>(statistics.message_end_time_ns -
+                                                   statistics.message_start_time_ns);
+    return report;
+  }
+
+  asio::io_context& io_;
+  const RecordOptions& options_;
+  recording::RecordingWriter writer_;
+  recording::ServerNames names_;
+  std::vector<std::unique_ptr<recording::ServerRecorder>> links_;
+  Result<void> written_;
+  std::int64_t written_down_ns_ = clock::MonotonicNs();
+  timer::Timer flush_;
+  timer::Timer progress_;
+  timer::Timer end_;
+  asio::signal_set signals_;
+};
+
+}  // namespace
+
+Result<RecordReport> Record(const RecordOptions& options) {
+  recording::WriterSettings settings;
+  settings.library = "footing-log " + options.version;
+  settings.replace = options.replace;
+  Result<recording::RecordingWriter> writer =
+      recording::RecordingWriter::Create(options.out, settings);
+  if (!writer) return writer.error();
+  asio::io_context io;
+  return Recording(io, std::move(*writer), options).Run();
 }
 
 }  // namespace footing::log_client

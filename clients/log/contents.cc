@@ -1,16 +1,467 @@
 #include "clients/log/contents.h"
 
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <utility>
+
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
 
-#include <algorithm>
-#include <utility>
-
-#include "common/recording/mapped_file.h"
-#include "common/recording/schema.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/body/angle_deviation.h"
+#include "common/recording/bids_tables.h"
+#include "common/recording/recorded_motion.h"
+#include "common/recording/recorded_session.h"
+#include "common/recording/recording_writer.h"
+#include "common/runtime/files.h"
+#include "common/stream/device.h"
+#include "footing/v1/character.pb.h"
+#include "footing/v1/device.pb.h"
 
 namespace footing::log_client {
+namespace {
+
+constexpr std::size_t kWriteBytes = 1u << 20;
+
+/// The topic's name as a file's: what is not a letter, a digit or '-' becomes '_'.
+std::string FileName(const std::string& topic) {
+  std::string name;
+  for (const char c : topic.substr(
+           topic.find_first_not_of('/') == std::string::npos ? 0 : topic.find_first_not_of('/'))) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-';
+    name += plain ? c : '_';
+  }
+  return name.empty() ? "topic" : name;
+}
+
+/// One topic on its way into a file.
+struct Sheet {
+  std::optional<recording::OutputFile> file;
+  std::string text;
+  ExportedFile exported;
+};
+
+class CsvExporter {
+ public:
+  CsvExporter(std::string_view bytes, const std::string& path) : tables_(bytes, path) {}
+
+  Result<std::vector<ExportedFile>> Run(const std::string& folder, bool replace) {
+    if (const Result<void> learned = tables_.Learn(); !learned) return learned.error();
+    if (const Result<void> opened = Open(folder, replace); !opened) return opened.error();
+    const Result<void> written =
+        tables_.Walk([this](std::uint16_t channel, const mcap::Message& record,
+                            const google::protobuf::Message& message) {
+          return WriteRows(tables_.topics().at(channel), record, message, sheets_[channel]);
+        });
+    if (!written) return written.error();
+    std::vector<ExportedFile> files;
+    for (auto& [channel, sheet] : sheets_) {
+      if (const Result<void> end = sheet.file->Write(sheet.text); !end) return end.error();
+      files.push_back(sheet.exported);
+    }
+    return files;
+  }
+
+ private:
+  Result<void> Open(const std::string& folder, bool replace) {
+    if (const Result<void> made = MakeFolder(folder); !made) return made.error();
+    std::set<std::string> taken;
+    for (const auto& [channel, topic] : tables_.topics()) {
+      if (!topic.table) continue;
+      Sheet& sheet = sheets_[channel];
+      std::string name = FileName(topic.topic);
+      while (!taken.insert(name).second) name += "_";
+      const std::string path = folder + "/" + name + ".csv";
+      Result<recording::OutputFile> file = recording::OutputFile::Create(path, replace);
+      if (!file) return file.error();
+      sheet.file.emplace(std::move(*file));
+      sheet.exported = {topic.topic, path, 0};
+      const std::string columns = topic.table->Header();
+      sheet.text = "log_time_ns,publish_time_ns,sequence" + (columns.empty() ? "" : "," + columns);
+      for (const std::string& column : tables_.notes().Columns(topic.table->row_type())) {
+        // The message's own column of that name comes first; ours says that it is a note.
+        const bool is_own = ("," + columns + ",").find("," + column + ",") != std::string::npos;
+        sheet.text += "," + (is_own ? "note_" + column : column);
+      }
+      sheet.text += "\n";
+    }
+    return {};
+  }
+
+  Result<void> WriteRows(const TopicTable& topic, const mcap::Message& record,
+                         const google::protobuf::Message& message, Sheet& sheet) {
+    const std::string prefix = std::to_string(record.log_time_ns) + "," +
+                               std::to_string(record.publish_time_ns) + "," +
+                               std::to_string(record.sequence) + ",";
+    const std::size_t before = sheet.text.size();
+    const auto end = [&](const google::protobuf::Message* entry) {
+      return tables_.notes().Cells(topic.topic, topic.table->row_type(), entry, record.log_time_ns);
+    };
+    topic.table->AppendRows(message, prefix, end, sheet.text);
+    sheet.exported.rows += static_cast<std::uint64_t>(std::count(
+        sheet.text.begin() + static_cast<std::ptrdiff_t>(before), sheet.text.end(), '\n'));
+    if (sheet.text.size() < kWriteBytes) return {};
+    Result<void> written = sheet.file->Write(sheet.text);
+    sheet.text.clear();
+    return written;
+  }
+
+  Tables tables_;
+  std::map<std::uint16_t, Sheet> sheets_;
+};
+
+}  // namespace
+
+Result<std::vector<ExportedFile>> ExportCsv(const std::string& recording, const std::string& folder,
+                                            bool replace) {
+  Result<recording::MappedFile> file = recording::OpenRecording(recording);
+  if (!file) return file.error();
+  return CsvExporter(file->bytes(), recording).Run(folder, replace);
+}
+
+namespace {
+
+namespace pb = google::protobuf;
+
+/// Of /SERVER/CHANNEL.
+std::string ServerOf(const std::string& topic) {
+  const std::size_t slash = topic.rfind('/');
+  return slash == std::string::npos || slash == 0 ? "" : topic.substr(1, slash - 1);
+}
+
+std::int64_t NumberOf(const mcap::TextMap& values, const std::string& key) {
+  const auto found = values.find(key);
+  std::int64_t number = 0;
+  if (found != values.end()) {
+    std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
+  }
+  return number;
+}
+
+/// Rows of this type are about a device and do not say its role themselves.
+const pb::FieldDescriptor* DeviceField(const pb::Descriptor* row) {
+  if (row == nullptr || row->FindFieldByName("role") != nullptr) return nullptr;
+  const pb::FieldDescriptor* field = row->FindFieldByName("device");
+  const bool number = field != nullptr && !field->is_repeated() &&
+                      field->cpp_type() == pb::FieldDescriptor::CPPTYPE_UINT32;
+  return number ? field : nullptr;
+}
+
+bool IsCharacter(const pb::Descriptor* row) {
+  return row != nullptr && row->full_name() == "footing.v1.Character";
+}
+
+void AppendNames(const std::vector<std::string>& names, std::size_t count, std::string& out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    out += ',';
+    if (i >= names.size()) continue;
+    // A name comes from a motion file: what would break the row is left out.
+    for (const char c : names[i]) {
+      if (c != ',' && c != '"' && c != '\n' && c != '\r') out += c;
+    }
+  }
+}
+
+/// The stated deviations of the links of a reconstructed person; of others, whose orientations are
+/// not estimates, none. A row does not say how far the knees are bent: the larger one counts.
+std::vector<double> OrientationDeviations(const v1::Skeleton& skeleton) {
+  std::vector<double> deviations;
+  if (skeleton.name() != "person") return deviations;
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  for (const v1::Link& link : skeleton.links()) {
+    names.push_back(link.name());
+    parents.push_back(link.parent());
+  }
+  for (const body::AngleDeviation& link : body::DeviationsOfLinks(names, parents)) {
+    deviations.push_back(DegreesToRadians(std::max(link.upright_deg, link.bent_deg)));
+  }
+  return deviations;
+}
+
+bool IsValid(const pb::Message* character) {
+  if (character == nullptr) return false;
+  const pb::FieldDescriptor* field = character->GetDescriptor()->FindFieldByName("valid");
+  return field != nullptr && !field->is_repeated() &&
+         field->cpp_type() == pb::FieldDescriptor::CPPTYPE_BOOL &&
+         character->GetReflection()->GetBool(*character, field);
+}
+
+void AppendDeviations(const std::vector<double>& deviations, std::size_t count, bool valid,
+                      std::string& out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    out += ',';
+    if (valid && i < deviations.size()) text::AppendFixed(out, deviations[i], 3);
+  }
+}
+
+}  // namespace
+
+void RowNotes::TakeSession(const mcap::TextMap& values) {
+  const auto name = values.find("server");
+  const std::int64_t wall_ns = NumberOf(values, "server_wall_time_ns");
+  const std::int64_t host_ns = NumberOf(values, "server_host_ns");
+  if (name == values.end() || wall_ns == 0 || !IsInstant(wall_ns) || !IsInstant(host_ns)) return;
+  Server& server = servers_[name->second];
+  server.has_wall_time = true;
+  server.wall_minus_host_ns = wall_ns - host_ns;
+}
+
+void RowNotes::Take(const std::string& topic, std::string_view bytes) {
+  const int size = static_cast<int>(bytes.size());
+  if (topic.ends_with("/status")) {
+    v1::DeviceStatusList list;
+    if (!list.ParseFromArray(bytes.data(), size)) return;
+    for (const v1::DeviceStatus& status : list.devices()) {
+      const auto role = static_cast<stream::DeviceRole>(status.role());
+      servers_[ServerOf(topic)].roles[status.device()] =
+          status.role() == v1::DEVICE_ROLE_UNSPECIFIED ? "" : stream::Name(role);
+    }
+  } else if (topic.ends_with("/skeletons")) {
+    v1::Skeletons skeletons;
+    if (!skeletons.ParseFromArray(bytes.data(), size) || skeletons.skeletons_size() == 0) return;
+    Server& server = servers_[ServerOf(topic)];
+    const v1::Skeleton& skeleton = skeletons.skeletons(0);
+    server.links.clear();
+    for (const v1::Link& link : skeleton.links()) server.links.push_back(link.name());
+    server.contacts.assign(skeleton.contact_points().begin(), skeleton.contact_points().end());
+    server.orientation_sd_rad = OrientationDeviations(skeleton);
+    most_deviations_ = std::max(most_deviations_, server.orientation_sd_rad.size());
+    most_links_ = std::max(most_links_, server.links.size());
+    most_contacts_ = std::max(most_contacts_, server.contacts.size());
+  }
+}
+
+void RowNotes::TakeTime(std::uint64_t log_time_ns) { first_ns_ = std::min(first_ns_, log_time_ns); }
+
+std::vector<std::string> RowNotes::Columns(const pb::Descriptor* row) const {
+  std::vector<std::string> names = {"recording_time_s", "wall_time"};
+  if (DeviceField(row) != nullptr) names.push_back("device_role");
+  if (!IsCharacter(row)) return names;
+  for (std::size_t i = 0; i < most_links_; ++i) {
+    names.push_back("links_" + std::to_string(i) + "_name");
+  }
+  for (std::size_t i = 0; i < most_contacts_; ++i) {
+    names.push_back("contacts_" + std::to_string(i) + "_name");
+  }
+  for (std::size_t i = 0; i < most_deviations_; ++i) {
+    names.push_back("links_" + std::to_string(i) + "_orientation_sd_rad");
+  }
+  return names;
+}
+
+const RowNotes::Server& RowNotes::ServerAt(const std::string& topic) const {
+  static const Server kUnknown;
+  const auto found = servers_.find(ServerOf(topic));
+  return found == servers_.end() ? kUnknown : found->second;
+}
+
+std::string RowNotes::Role(const std::string& topic, const pb::Descriptor* row,
+                           const pb::Message* entry) const {
+  const pb::FieldDescriptor* field = DeviceField(row);
+  if (field == nullptr || entry == nullptr) return "";
+  const Server& server = ServerAt(topic);
+  const auto role = server.roles.find(entry->GetReflection()->GetUInt32(*entry, field));
+  return role == server.roles.end() ? "" : role->second;
+}
+
+std::string RowNotes::DeviationNote(const std::string& topic, const pb::Descriptor* row) const {
+  const Server& server = ServerAt(topic);
+  if (!IsCharacter(row) || server.orientation_sd_rad.empty()) return "";
+  std::string note = "orientation_sd_rad of links 0, 1, ...: ";
+  for (std::size_t i = 0; i < server.orientation_sd_rad.size(); ++i) {
+    if (i > 0) note += ", ";
+    text::AppendFixed(note, server.orientation_sd_rad[i], 3);
+  }
+  return note + "; " + std::string(body::AngleDeviationSource());
+}
+
+std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
+                            const pb::Message* entry, std::uint64_t log_time_ns) const {
+  const Server& server = ServerAt(topic);
+  char seconds[40];
+  std::snprintf(seconds, sizeof seconds, ",%.9f,",
+                1e-9 * static_cast<double>(log_time_ns - std::min(first_ns_, log_time_ns)));
+  std::string cells = seconds;
+  if (server.has_wall_time && IsInstant(log_time_ns)) {
+    cells += text::Utc(static_cast<std::int64_t>(log_time_ns) + server.wall_minus_host_ns, 6);
+  }
+  if (DeviceField(row) != nullptr) cells += ',' + Role(topic, row, entry);
+  if (IsCharacter(row)) {
+    AppendNames(server.links, most_links_, cells);
+    AppendNames(server.contacts, most_contacts_, cells);
+    AppendDeviations(server.orientation_sd_rad, most_deviations_, IsValid(entry), cells);
+  }
+  return cells;
+}
+
+Result<void> Tables::Learn() {
+  mcap::Visitor visitor;
+  visitor.schema = [this](const mcap::Schema& schema) {
+    if (const Result<void> added = pool_.Add(schema); !added) {
+      Fail(InvalidData(path_ + ": " + added.error().message));
+    }
+  };
+  visitor.channel = [this](const mcap::Channel& channel) {
+    TopicTable& topic = topics_[channel.id];
+    topic.topic = channel.topic;
+    topic.schema_id = channel.schema_id;
+  };
+  visitor.metadata = [this](const mcap::Metadata& metadata) {
+    if (metadata.name == "session") notes_.TakeSession(metadata.values);
+  };
+  visitor.message = [this](const mcap::Message& record) {
+    TopicTable& topic = topics_[record.channel_id];
+    const google::protobuf::Message* parsed = Parse(topic, record);
+    if (parsed == nullptr) return;
+    notes_.TakeTime(record.log_time_ns);
+    notes_.Take(topic.topic, record.data);
+    if (!topic.table) topic.table.emplace(*parsed->GetDescriptor());
+    Fail(topic.table->Learn(*parsed));
+  };
+  const mcap::WalkEnd end = mcap::Walk(bytes_, visitor, mcap::WalkMode::kStrict);
+  if (!first_failure_) return first_failure_.error();
+  if (const std::optional<Error> incomplete = Incomplete(path_, end)) return *incomplete;
+  return {};
+}
+
+Result<void> Tables::Walk(const Visit& visit) {
+  mcap::Visitor visitor;
+  visitor.message = [&](const mcap::Message& record) {
+    if (!first_failure_) return;
+    const TopicTable& topic = topics_[record.channel_id];
+    const google::protobuf::Message* parsed = Parse(topic, record);
+    if (parsed == nullptr) return;
+    notes_.Take(topic.topic, record.data);
+    Fail(visit(record.channel_id, record, *parsed));
+  };
+  mcap::Walk(bytes_, visitor, mcap::WalkMode::kStrict);
+  return first_failure_;
+}
+
+const google::protobuf::Message* Tables::Parse(const TopicTable& topic,
+                                               const mcap::Message& record) {
+  const google::protobuf::Message* parsed = pool_.Parse(topic.schema_id, record.data);
+  if (parsed == nullptr) {
+    Fail(InvalidData(path_ + ": a message on " + topic.topic + " does not fit its schema"));
+  }
+  return parsed;
+}
+
+namespace {
+
+constexpr const char* kReadme =
+    "Motion and events of recordings, written by footing-log.\n"
+    "\n"
+    "Each recording is a task of a subject. The tracking system body is the reconstructed person:\n"
+    "a place and an orientation of each joint; sim is a simulated character (gaits: 1 step, 2 "
+    "walk,\n"
+    "3 run, 4 jump). Hands whose names end in tracked were seen by a tracker. All of these have x\n"
+    "forward, y left, z up, right-handed. Every other tracking system is a device, in its own "
+    "frame\n"
+    "(x left, y front, z down), named by where it was worn. The channel latency has the time of\n"
+    "each sample from the start of the recording; all systems of a recording share it, and so do\n"
+    "the events.\n";
+
+class DataSet {
+ public:
+  DataSet(std::string folder, const BidsOptions& options)
+      : folder_(std::move(folder)), options_(options) {}
+
+  Result<ExportedBids> Add(const bids::RecordedMotion& motion, const std::string& label,
+                           const std::string& task, const std::string& recording) {
+    const std::string subject = "sub-" + label;
+    const std::string stem = subject + "_task-" + task;
+    const std::string motions = folder_ + "/" + subject + "/motion";
+    if (const auto made = MakeFolder(motions); !made) return made.error();
+    ExportedBids exported;
+    exported.events = motion.events.size();
+    for (const bids::MotionTable& table : motion.tables) {
+      const auto files = bids::MotionFiles(table, stem, "", task, "Recording " + recording);
+      for (const bids::File& file : files) {
+        if (const auto done = Write(motions, file, options_.replace); !done) return done.error();
+      }
+      exported.tables.push_back({motions + "/" + files.front().name, table.tracksys,
+                                 table.channels.size(),
+                                 table.cells.size() / table.channels.size()});
+    }
+    for (const bids::File& file : bids::EventFiles(motion.events, stem)) {
+      if (const auto done = Write(motions, file, options_.replace); !done) return done.error();
+    }
+    if (const auto done = WriteTop(subject); !done) return done.error();
+    return exported;
+  }
+
+ private:
+  static Result<void> Write(const std::string& folder, const bids::File& file, bool replace) {
+    auto out = recording::OutputFile::Create(folder + "/" + file.name, replace);
+    if (!out) return out.error();
+    return out->Write(file.text);
+  }
+
+  /// The files of the whole data set, where they are missing, and the subject in its list.
+  Result<void> WriteTop(const std::string& subject) const {
+    for (const bids::File& file :
+         {bids::DescriptionFile("Recordings", "footing-log", options_.version),
+          bids::File{"README", kReadme}}) {
+      if (std::filesystem::exists(folder_ + "/" + file.name)) continue;
+      if (const auto done = Write(folder_, file, false); !done) return done.error();
+    }
+    const std::string list = folder_ + "/participants.tsv";
+    std::string text = "participant_id\n";
+    if (std::filesystem::exists(list)) {
+      const auto read = config::ReadTextFile(list);
+      if (!read) return read.error();
+      text = *read;
+    }
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.substr(0, line.find('\t')) == subject) return {};
+    }
+    if (!text.ends_with('\n')) text += '\n';
+    const std::string header = text.substr(0, text.find('\n'));
+    const auto more = std::count(header.begin(), header.end(), '\t');  // Columns added by somebody.
+    text += subject;
+    for (auto i = more; i > 0; --i) text += "\tn/a";
+    return Write(folder_, {"participants.tsv", text + "\n"}, true);
+  }
+
+  std::string folder_;
+  const BidsOptions& options_;
+};
+
+}  // namespace
+
+Result<ExportedBids> ExportBids(const std::string& recording, const std::string& folder,
+                                const BidsOptions& options) {
+  const std::string name = std::filesystem::path(recording).stem().string();
+  const std::string subject = options.subject.empty() ? "01" : options.subject;
+  const std::string task = options.task.empty() ? bids::LabelOf(name) : options.task;
+  for (const auto& [option, label] : {std::pair("--subject", subject), {"--task", task}}) {
+    if (label.empty() || bids::LabelOf(label) != label) {
+      return UsageError(std::string(option) + " '" + label +
+                        "' cannot be a label of a data set: use letters and digits");
+    }
+  }
+  const auto session = recording::RecordedSession::Open(recording);
+  if (!session) return session.error();
+  const auto motion = bids::ReadMotion(*session, {});
+  if (!motion) return motion.error();
+  if (motion->tables.empty()) {
+    return InvalidData(recording +
+                       " has no samples of devices or tracked hands and no frame of footing-sim");
+  }
+  return DataSet(folder, options).Add(*motion, subject, task, name);
+}
+
 namespace {
 
 namespace pb = google::protobuf;

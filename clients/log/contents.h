@@ -1,15 +1,168 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
-#include "common/recording/walk.h"
+#include <google/protobuf/message.h>
+
+#include "clients/log/csv_table.h"
 #include "common/base/result.h"
+#include "common/recording/mcap_reader.h"
+#include "common/recording/mcap_records.h"
+#include "common/recording/recording_writer.h"
 
 namespace footing::log_client {
+
+struct ExportedFile {
+  std::string topic;
+  std::string path;
+  std::uint64_t rows = 0;
+};
+
+/// Writes one CSV file a topic into `folder` (made if it is not there): log_time_ns,
+/// publish_time_ns, sequence, then the columns of CsvTable. A recording that is cut short or
+/// damaged is InvalidData that names the repair, and nothing is written; an existing file is a
+/// usage error, unless `replace`.
+Result<std::vector<ExportedFile>> ExportCsv(const std::string& recording, const std::string& folder,
+                                            bool replace);
+
+/// Makes the folder of an export, and those above it, where they are not there. Failure says why.
+inline Result<void> MakeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return Failure("cannot make the folder " + folder + ": " + error.message());
+  return {};
+}
+
+/// The folder as a shell's completion leaves it, without the slashes at its end.
+inline std::string WithoutEndSlashes(std::string folder) {
+  while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+  return folder;
+}
+
+/// What an exported row says beside its message: its time in seconds and as wall time, the role of
+/// the device that it is about, the names of a character's links and contact points, the stated
+/// standard deviation of a reconstructed person's links. They come from other messages of the same
+/// server, as far as the recording has been read.
+class RowNotes {
+ public:
+  /// A session of a server: its metadata relates the server's clock to wall time.
+  void TakeSession(const mcap::TextMap& values);
+  /// Remembers the roles in .../status and the names in .../skeletons; of other topics nothing.
+  void Take(const std::string& topic, std::string_view bytes);
+  /// Seconds count from the earliest time taken.
+  void TakeTime(std::uint64_t log_time_ns);
+
+  /// The names of the columns for rows of this type (null: the message has one row).
+  std::vector<std::string> Columns(const google::protobuf::Descriptor* row) const;
+  /// The role of the device that a row is about, such as "left_board"; empty where none is known.
+  std::string Role(const std::string& topic, const google::protobuf::Descriptor* row,
+                   const google::protobuf::Message* entry) const;
+  /// The stated standard deviations of the orientations in a table of a reconstructed person's
+  /// rows, as text; empty for every other table.
+  std::string DeviationNote(const std::string& topic,
+                            const google::protobuf::Descriptor* row) const;
+  /// The cells of a row, each with a comma in front. `entry` is null for a message with one row.
+  std::string Cells(const std::string& topic, const google::protobuf::Descriptor* row,
+                    const google::protobuf::Message* entry, std::uint64_t log_time_ns) const;
+
+ private:
+  struct Server {
+    bool has_wall_time = false;
+    std::int64_t wall_minus_host_ns = 0;
+    std::map<std::uint32_t, std::string> roles;
+    std::vector<std::string> links;
+    std::vector<std::string> contacts;
+    std::vector<double> orientation_sd_rad;  ///< Of a reconstructed person, as many as links.
+  };
+
+  const Server& ServerAt(const std::string& topic) const;
+
+  std::map<std::string, Server> servers_;
+  std::uint64_t first_ns_ = UINT64_MAX;
+  std::size_t most_links_ = 0;
+  std::size_t most_contacts_ = 0;
+  std::size_t most_deviations_ = 0;
+};
+
+/// One topic of a recording, whose messages are rows of a table.
+struct TopicTable {
+  std::string topic;
+  std::uint16_t schema_id = 0;
+  std::optional<CsvTable> table;  ///< Nothing when the topic has no message.
+};
+
+/// The messages of a recording as rows of tables, one table a topic, in two passes: the first
+/// learns the columns, roles and names, the second visits the messages in their order.
+class Tables {
+ public:
+  /// `bytes` of the recording stay valid as long as this; `path` names it in errors.
+  Tables(std::string_view bytes, std::string path) : bytes_(bytes), path_(std::move(path)) {}
+
+  /// The first pass. InvalidData where the recording is cut short or damaged, or a message does not
+  /// fit its schema.
+  Result<void> Learn();
+
+  /// Ends at the first failure. `channel` is the topic's key in topics().
+  using Visit = std::function<Result<void>(std::uint16_t channel, const mcap::Message& record,
+                                           const google::protobuf::Message& message)>;
+  Result<void> Walk(const Visit& visit);
+
+  /// By channel.
+  const std::map<std::uint16_t, TopicTable>& topics() const { return topics_; }
+  /// Of the whole recording after Learn(); while Walk() goes on, of what it has passed.
+  const RowNotes& notes() const { return notes_; }
+
+ private:
+  const google::protobuf::Message* Parse(const TopicTable& topic, const mcap::Message& record);
+  /// Keeps the first failure.
+  void Fail(Result<void> result) {
+    if (!result && first_failure_) first_failure_ = std::move(result);
+  }
+
+  std::string_view bytes_;
+  std::string path_;
+  recording::SchemaPool pool_;
+  RowNotes notes_;
+  std::map<std::uint16_t, TopicTable> topics_;
+  Result<void> first_failure_;
+};
+
+struct BidsOptions {
+  std::string subject;  ///< Letters and digits; empty: "01".
+  std::string task;     ///< Letters and digits; empty: those of the recording's name.
+  bool replace = false;
+  std::string version;
+};
+
+/// What one tracking system measured.
+struct ExportedTable {
+  std::string path;  ///< Of the file with the motion.
+  std::string tracking_system;
+  std::size_t channels = 0;
+  std::size_t samples = 0;
+};
+
+struct ExportedBids {
+  std::vector<ExportedTable> tables;
+  std::size_t events = 0;
+};
+
+/// Adds a recording to the data set `folder`, in the form of BIDS-motion, as one task of one
+/// subject: samples of the devices, frames of footing-sim, events. Makes the data set where there
+/// is none; other subjects and tasks in it stay. A label that has other signs than letters and
+/// digits is a usage error, and so is a file that exists, unless `replace`. InvalidData where the
+/// recording has nothing of this.
+Result<ExportedBids> ExportBids(const std::string& recording, const std::string& folder,
+                                const BidsOptions& options);
 
 struct Topic {
   std::string name;

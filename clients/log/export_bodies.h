@@ -1,12 +1,18 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "common/base/result.h"
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
+#include "common/virtual/motion/table.h"
+#include "footing/v1/character.pb.h"
 
 namespace footing::log_client {
 
@@ -44,5 +50,70 @@ enum class BodyFormat {
 Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
                                                  const std::string& folder, BodyFormat format,
                                                  bool replace);
+
+/// Forces under the feet of a reconstructed body, a table for OpenSim (.mot). Axes: x ahead, y up,
+/// z right.
+/// What carries a foot: force upwards at a point of the floor.
+struct FootForce {
+  double load_n = 0;
+  Eigen::Vector3d cop_W = Eigen::Vector3d::Zero();  ///< m.
+};
+
+/// Left, right.
+using FootForces = std::array<FootForce, 2>;
+
+/// Ground forces, a row for each of `forces`, from 0 s on: ground_force_r_vx, ... Only the vertical
+/// force is known; the others and the free moments are 0.
+motion::Table ForceTable(const std::vector<FootForces>& forces, double rate_hz);
+
+/// A reconstructed body as a C3D file holds it: the centres of the joints as points, the forces
+/// under the feet as two force plates. Axes: W (x ahead, y left, z up).
+///
+/// Plate 1 is the left foot, plate 2 the right one. Both are one rectangle of the floor that holds
+/// all centres of pressure, and of type 2: three forces on the person and three moments about the
+/// rectangle's middle, in axes x ahead, y right, z down. Only the vertical force and the moments
+/// that it causes are known; the others are 0. The points of a frame that is not `valid` are not
+/// seen.
+motion::C3d ToC3d(const motion::Motion& motion, const std::vector<bool>& valid,
+                  const std::vector<FootForces>& forces);
+
+/// Gathers frames of one reconstructed body into a motion.
+///
+/// Lengths are those of the first frame taken (links are rigid); every joint turns about three
+/// axes. Frames before the T-pose are left out; where a frame is missing the one before stands.
+class MotionGatherer {
+ public:
+  explicit MotionGatherer(const v1::Skeleton& skeleton) : skeleton_(skeleton) {}
+
+  void Add(const v1::CharacterFrame& frame, std::uint64_t log_time_ns = 0);
+  /// Nothing where no frame was taken. InvalidData where frames and skeleton do not fit, or time
+  /// does not go on.
+  Result<motion::Motion> Finish() const;
+  /// The loads of the feet at the instants of the poses of Finish(). A foot has none where its
+  /// centre of pressure is not known, or while the boards or its insole measure nothing: the engine
+  /// repeats the last load then.
+  Result<std::vector<FootForces>> Forces() const;
+  /// Whether the engine reported each pose of Finish() as valid.
+  Result<std::vector<bool>> Valid() const;
+  bool empty() const { return frames_.empty(); }
+  const std::string& subject() const { return subject_; }
+  /// How much older than its frame a pose is.
+  double lag_s() const;
+  /// Log time of the first frame taken.
+  std::uint64_t begin_ns() const { return begin_ns_; }
+
+ private:
+  /// At equal steps, the newest frame of each.
+  struct Grid {
+    double step_s = 0;
+    std::vector<std::size_t> frames;
+  };
+  Result<Grid> MakeGrid() const;
+
+  v1::Skeleton skeleton_;
+  std::vector<v1::CharacterFrame> frames_;
+  std::string subject_;
+  std::uint64_t begin_ns_ = 0;
+};
 
 }  // namespace footing::log_client

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/result.h"
@@ -29,3 +32,53 @@ Result<ExportedXdf> ExportXdf(const std::string& recording, const std::string& f
                               bool replace);
 
 }  // namespace footing::log_client
+
+/// Chunks of XDF 1.0, the file format of the Lab Streaming Layer (github.com/sccn/xdf, wiki
+/// "Specifications"). All numbers are little-endian.
+namespace footing::log_client::xdf {
+
+/// One stream, as its header describes it. Its channels hold doubles, or it has one channel of
+/// text.
+struct Stream {
+  std::uint32_t id = 0;  ///< From 1.
+  std::string name;
+  std::string type;       ///< LSL's word for the content, such as "Markers"; free text.
+  std::string source_id;  ///< The same for the same source in every recording.
+  std::vector<std::string> channels;
+  bool is_text = false;
+  std::string note{};  ///< What else its header says; may be empty.
+};
+
+/// What a stream's footer says.
+struct Extent {
+  double first_s = 0, last_s = 0;
+  std::uint64_t samples = 0;
+};
+
+/// The first bytes of a file: its mark and the file header chunk.
+std::string FileStart();
+
+void AppendHeader(const Stream& stream, std::string& out);
+/// Says that the stream's times are those of the file's common clock: an offset of 0. Readers
+/// expect one at the stream's begin and one at its end.
+void AppendClockOffset(const Stream& stream, double time_s, std::string& out);
+void AppendFooter(const Stream& stream, const Extent& extent, std::string& out);
+/// A place at which a reader of a damaged file can start again; at least one in ten seconds.
+void AppendBoundary(std::string& out);
+
+/// Samples of one stream on their way into a chunk.
+class Samples {
+ public:
+  /// Times are seconds of the streams' common clock; a row of numbers has one for each channel.
+  void Add(double time_s, std::span<const double> numbers);
+  void Add(double time_s, std::string_view text);
+  std::size_t bytes() const { return content_.size(); }
+  /// Appends the chunk and becomes empty. Without samples it appends nothing.
+  void AppendTo(const Stream& stream, std::string& out);
+
+ private:
+  std::string content_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace footing::log_client::xdf

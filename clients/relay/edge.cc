@@ -6,14 +6,12 @@
 #include <utility>
 
 #include "clients/relay/channels.h"
-#include "clients/relay/subjects.h"
-#include "common/runtime/clock.h"
-#include "common/runtime/fields.h"
-#include "common/runtime/log.h"
-#include "common/net/channels_of.h"
-#include "common/net/socket.h"
-#include "common/net/tick_rate.h"
 #include "common/base/units.h"
+#include "common/net/server.h"
+#include "common/net/socket.h"
+#include "common/net/tick.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
 
 namespace footing::relay {
 namespace {

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "clients/relay/channels.h"
 #include "clients/relay/nats_link.h"
-#include "clients/relay/thinner.h"
 #include "common/base/result.h"
-#include "common/runtime/timer.h"
 #include "common/net/access.h"
-#include "common/net/clock_probes.h"
+#include "common/net/clock_offset.h"
 #include "common/net/server.h"
+#include "common/runtime/timer.h"
 
 namespace footing::relay {
 

@@ -1,4 +1,4 @@
-#include "clients/relay/commands.h"
+#include "clients/relay/options.h"
 #include "common/cli/cli.h"
 #include "common/runtime/log.h"
 

@@ -1,14 +1,17 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <boost/asio/io_context.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 
+#include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
+
+#include "clients/relay/edge.h"
 #include "clients/relay/nats_link.h"
-#include "common/net/metrics_endpoint.h"
+#include "clients/relay/publisher.h"
 #include "common/base/result.h"
+#include "common/net/metrics_endpoint.h"
 
 /// Options that both subcommands have, and how both run.
 namespace footing::relay {
@@ -36,5 +39,19 @@ enum class RunEnd { kStopped, kTimeUp };
 /// stops the loop when its work is done; it is stopped after 2 s in any case.
 RunEnd RunUntilStopped(boost::asio::io_context& io, double seconds,
                        const std::function<void(std::function<void()> done)>& end);
+
+/// How a relay fares, in Prometheus' text format, with what this process takes of the host.
+std::string MetricsText(const PublisherReport& report, const std::string& version);
+std::string MetricsText(const EdgeReport& report, const std::string& version);
+
+/// What both ways to run have in common.
+struct Shared {
+  bool json = false;
+  int exit_code = 0;
+};
+
+/// Each adds one subcommand to footing-relay; its callback does the work.
+void AddPublishCommand(CLI::App& app, Shared& shared);
+void AddServeCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::relay

@@ -4,19 +4,17 @@
 #include <iostream>
 #include <memory>
 
-#include "clients/skeleton/tracking/synthetic_clip.h"
 #include "clients/skeleton/receiver.h"
 #include "clients/skeleton/sender.h"
-#include "clients/skeleton/statistics.h"
-#include "clients/skeleton/udp.h"
-#include "clients/skeleton/model_files.h"
-#include "common/cli/cli.h"
-#include "common/runtime/data_file.h"
-#include "common/runtime/log.h"
+#include "clients/skeleton/tracking/synthetic_clip.h"
+#include "clients/skeleton/web_server.h"
 #include "common/base/json_text.h"
-#include "common/net/address_or_default.h"
-#include "common/net/socket.h"
 #include "common/base/units.h"
+#include "common/cli/cli.h"
+#include "common/net/address.h"
+#include "common/net/socket.h"
+#include "common/runtime/files.h"
+#include "common/runtime/log.h"
 
 namespace footing::skeleton {
 namespace {

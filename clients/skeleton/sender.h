@@ -1,13 +1,16 @@
 #pragma once
 
-#include <boost/asio/ip/udp.hpp>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "clients/skeleton/tracking/kinect_clip.h"
+#include <boost/asio/ip/udp.hpp>
+#include <nlohmann/json.hpp>
+
 #include "clients/skeleton/tracking/dialects.h"
+#include "clients/skeleton/tracking/synthetic_clip.h"
+#include "clients/skeleton/tracking/tracker.h"
+#include "clients/skeleton/web_server.h"
 #include "common/base/result.h"
 
 namespace footing::skeleton {
@@ -26,5 +29,23 @@ struct SenderOptions {
 /// when the address cannot be sent to.
 Result<nlohmann::ordered_json> SendClip(const std::vector<ClipFrame>& clip,
                                         const SenderOptions& options);
+
+/// What a run took, beside the tracker's counts.
+struct Cost {
+  double seconds = 0;
+  double cpu_s = 0;
+  std::uint64_t dropped_packets = 0;
+  std::uint64_t published = 0;  ///< Skeletons, to footingd.
+  std::uint64_t hand_frames = 0, dropped_hand_frames = 0;
+};
+
+/// The statistics of a run: docs/skeleton.md lists the fields.
+nlohmann::ordered_json ToJson(const Tracker& tracker, const Cost& cost);
+
+/// The same of the page.
+nlohmann::ordered_json ToJson(const WebCounts& web);
+
+/// The same for a person to read, a few lines.
+std::string ToText(const nlohmann::ordered_json& statistics);
 
 }  // namespace footing::skeleton

@@ -1,20 +1,20 @@
 #include "clients/skeleton/web_server.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <utility>
+
 #include <boost/beast/core/flat_static_buffer.hpp>
 #include <boost/beast/core/multi_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#include <chrono>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <utility>
 
-#include "clients/skeleton/model_files.h"
-#include "clients/skeleton/page.h"
-#include "common/runtime/timer.h"
 #include "common/net/listener.h"
 #include "common/net/socket.h"
+#include "common/runtime/timer.h"
 
 namespace footing::skeleton {
 namespace {
@@ -282,5 +282,34 @@ WebServer::~WebServer() = default;
 
 const WebCounts& WebServer::counts() const { return implementation_->counts(); }
 const transport::Address& WebServer::address() const { return implementation_->address(); }
+
+std::filesystem::path DefaultPosePackage() {
+  const char* const data = std::getenv("XDG_DATA_HOME");
+  const char* const home = std::getenv("HOME");
+  const std::filesystem::path base =
+      data != nullptr && *data != '\0'
+          ? std::filesystem::path(data)
+          : std::filesystem::path(home != nullptr ? home : "/") / ".local/share";
+  return base / "footing/mediapipe-pose";
+}
+
+std::optional<std::filesystem::path> ModelFile(const std::filesystem::path& package,
+                                               std::string_view name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.' || c == '-';
+  };
+  if (name.empty() || name[0] == '.' || !std::all_of(name.begin(), name.end(), is_plain))
+    return std::nullopt;
+  const std::filesystem::path path = package / name;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  return path;
+}
+
+bool IsOwnHost(std::string_view host) {
+  const std::string_view name = host.substr(0, host.rfind(':'));
+  return name == "127.0.0.1" || name == "localhost" || name == "[::1]";
+}
 
 }  // namespace footing::skeleton

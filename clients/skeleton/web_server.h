@@ -1,11 +1,14 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+
+#include <boost/asio/io_context.hpp>
 
 #include "clients/skeleton/tracking/osc.h"
 #include "common/base/result.h"
@@ -49,5 +52,27 @@ class WebServer {
   explicit WebServer(std::unique_ptr<Implementation> implementation);
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// A file of the page, which is part of the program.
+struct PageFile {
+  std::string_view name;
+  std::string_view type;  ///< Of its content, for HTTP.
+  std::string_view text;
+};
+
+/// "" is index.html; nullptr where there is no such file.
+const PageFile* FindPageFile(std::string_view name);
+
+/// Where scripts/fetch-pose-model puts npm's @mediapipe/pose:
+/// $XDG_DATA_HOME/footing/mediapipe-pose, by default below ~/.local/share.
+std::filesystem::path DefaultPosePackage();
+
+/// The file of that name in the package; nothing where the name is none of a file directly in it.
+std::optional<std::filesystem::path> ModelFile(const std::filesystem::path& package,
+                                               std::string_view name);
+
+/// What a browser gives as the host that it asks, "NAME:PORT", is this one. One that was led here
+/// by a name of somebody else (DNS rebinding) gives that.
+bool IsOwnHost(std::string_view host);
 
 }  // namespace footing::skeleton

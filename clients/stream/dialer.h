@@ -1,15 +1,179 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <boost/asio/io_context.hpp>
 
 #include "clients/stream/plan.h"
 #include "common/net/address.h"
+#include "common/stream/track.h"
+#include "common/stream/user_interface.h"
+#include "common/virtual/devices/accelerometer.h"
+#include "common/virtual/people/driver.h"
+#include "common/virtual/people/person.h"
+#include "common/virtual/people/style.h"
+#include "footing/v1/session.pb.h"
 
 namespace footing::stream_client {
+
+/// What a person in front of the picture sees of the character.
+struct RunnerSight {
+  Eigen::Vector2d p_W_m = Eigen::Vector2d::Zero();
+  double heading_rad = 0;
+  double speed_mps = 0;
+};
+
+/// How the hands are swung, alternately.
+struct RunnerSwing {
+  double frequency_hz = 0;  ///< 0: at rest.
+  double amplitude_mps2 = 0;
+  double roll_rad = 0;  ///< Left side higher is positive: turn right.
+};
+
+/// A synthetic player of the wrist interface who runs along a track that grows: sees the character
+/// and the track as they were a reaction time ago, reckons with the turns commanded since, steers
+/// for the centre line by inclining both hands, runs where it is straight and walks where it bends.
+class Runner {
+ public:
+  /// Draws the reaction time, 0.2 to 0.3 s, and the favourite speed of running.
+  explicit Runner(std::uint64_t seed);
+
+  void SeeTrack(const stream::Track& track);
+  void See(double time_s, const RunnerSight& sight);
+  /// What the hands do at that time, which never runs back; at rest until there is something to
+  /// see.
+  RunnerSwing Want(double time_s);
+
+  double reaction_s() const { return reaction_s_; }
+
+ private:
+  /// The centre line, in even steps.
+  struct Point {
+    Eigen::Vector2d p_W_m;
+    double heading_rad = 0;
+  };
+  struct Seen {
+    double time_s = 0;
+    RunnerSight sight;
+  };
+  struct Turned {
+    double time_s = 0;
+    int side = 0;  ///< 1 to the left.
+  };
+
+  RunnerSight Reckon(double time_s) const;
+  std::size_t NearestTo(const Eigen::Vector2d& p_W_m) const;
+  const Point& Ahead(std::size_t from, double ahead_m) const;
+  double BendAhead(std::size_t from, double speed_mps) const;
+
+  double reaction_s_;
+  double favourite_mps_;
+  std::vector<Point> line_;
+  std::deque<Seen> seen_;
+  std::deque<Turned> turned_;
+  int side_ = 0;
+  bool runs_ = false;
+};
+
+/// A Runner's two hands as their sensors feel them. Its clock is that of its devices.
+class LiveRunner {
+ public:
+  explicit LiveRunner(std::uint64_t seed);
+
+  /// What footing-sim publishes of the character and its track.
+  void See(const v1::Tick& tick);
+  /// The hands at t_s since the motion began; a time before the last one gives the last ones.
+  wrists::Hands At(double t_s);
+
+ private:
+  Runner runner_;
+  wrists::HandMotion unit_;  ///< One cycle a second of 1 m/s2.
+  RunnerSwing swing_;        ///< As it is now, on its way to what is wanted.
+  double cycles_ = 0;
+  double time_s_ = 0;
+};
+
+/// The two Wiimotes of a synthetic player, and who moves them.
+struct RunnerPlan {
+  Plan plan;
+  std::shared_ptr<LiveRunner> runner;
+};
+Result<RunnerPlan> PlanRunner(const Common& common);
+
+/// A synthetic user in real time: sees what footing-sim publishes of the character, its track and
+/// its trial, and moves the devices of one interface. Its clock is that of its devices. Stands
+/// still while it sees nothing.
+class LiveUser {
+ public:
+  /// `turn_by` is what turns with the interface leg. A user with `acts` performs these again and
+  /// again, whatever it sees.
+  LiveUser(stream::UserInterface interface, stream::TurnSource turn_by, const users::Style& style,
+           std::uint64_t seed, std::vector<users::Act> acts = {});
+
+  void See(const v1::Tick& tick);
+  /// What the devices feel at t_s since the motion began; after a new connection that is 0 again.
+  const users::Felt& At(double t_s);
+
+ private:
+  users::Intention Want();
+
+  /// Without a frame for this long the user sees nothing.
+  static constexpr double kBlindS = 0.5;
+
+  stream::Track track_;
+  std::vector<users::Act> acts_;
+  users::Driver driver_;
+  users::Person person_;
+  users::Observation seen_;
+  users::Intention wanted_;
+  double seen_s_ = -1e9;
+  double time_s_ = 0;
+  double before_s_ = 0;  ///< Of the connections before this one.
+  double at_s_ = 0;
+};
+
+/// The devices of a synthetic user, and the user who moves them.
+struct LiveUserPlan {
+  Plan plan;
+  std::shared_ptr<LiveUser> user;
+};
+/// Who the user is, as options have it.
+struct LiveUserOptions {
+  std::string interface = "wrist";
+  std::string turn_by = "head";
+  std::optional<double> grip_deg = {};  ///< None: drawn with the style.
+  std::string grip_way = "mirrored";
+  users::StyleWish style = {};
+  bool ranges = false;  ///< Performs the motions of `footing-study ranges`.
+};
+/// A usage error lists what there is. `style_seed` is that of the user, common.seed that of the
+/// devices.
+Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& common,
+                                  std::uint64_t style_seed);
+
+struct UserOptions {
+  std::string script = "demo";
+  std::string interface = "wrist";
+  std::string turn_by = "head";
+  std::optional<double> grip_deg;
+  std::string grip_way = "mirrored";
+  std::string see;  ///< Address of footing-sim; empty: the user follows the script.
+  bool ranges = false;
+  std::optional<std::uint64_t> style_seed;
+  users::StyleWish style;
+  Ports ports;
+};
+
+/// The subcommand user and its flags. `options` must outlive the parsing.
+CLI::App* AddUserCommand(CLI::App& app, UserOptions& options);
 
 struct DialerOptions {
   transport::Address to;

@@ -1,24 +1,18 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 
-#include "clients/stream/boards_command.h"
-#include "clients/stream/builder.h"
+#include "clients/stream/boards.h"
+#include "clients/stream/body_stage.h"
 #include "clients/stream/dialer.h"
-#include "clients/stream/live_runner.h"
 #include "clients/stream/plan.h"
-#include "clients/stream/players_command.h"
-#include "clients/stream/rehearse_command.h"
-#include "clients/stream/replay.h"
 #include "clients/stream/samples.h"
-#include "clients/stream/user_command.h"
-#include "clients/stream/watch.h"
+#include "common/base/units.h"
 #include "common/cli/cli.h"
-#include "common/runtime/clock.h"
+#include "common/net/address.h"
 #include "common/net/device_link.h"
+#include "common/runtime/clock.h"
 #include "common/runtime/log.h"
 #include "common/runtime/timer.h"
-#include "common/net/address_or_default.h"
-#include "common/base/units.h"
 
 namespace {
 

@@ -1,19 +1,23 @@
 #include "clients/stream/plan.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
 #include <utility>
 
-#include "clients/stream/script.h"
-#include "clients/stream/stick.h"
-#include "clients/stream/table.h"
-#include "common/runtime/data_file.h"
+#include <Eigen/Geometry>
+
+#include "clients/stream/samples.h"
+#include "clients/stream/simulated_device.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
+#include "common/recording/recorded_session.h"
+#include "common/runtime/files.h"
+#include "common/runtime/log.h"
 #include "common/virtual/devices/accelerometer.h"
-#include "common/virtual/devices/hand_motion.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::stream_client {
 namespace {
@@ -242,6 +246,257 @@ Result<Plan> PlanCorners(const std::string& left, const std::string& right, cons
                               virtual_devices::BoardLink(*link, seed + 500));
   }
   plan.duration_s = Duration(common, longest_s);
+  return plan;
+}
+
+Result<Table> ParseTable(const std::string& text, std::size_t columns, const std::string& origin) {
+  Table table;
+  text::Lines lines(text, origin);
+  bool first = true;
+  while (const auto line = lines.NextFull()) {
+    const bool header = first && !text::ToNumber(text::Cells(*line)[0]);
+    first = false;
+    if (header) continue;
+    auto row = text::NumberRow(*line, columns);
+    if (!row) return lines.Fault(row.error().message);
+    table.rows.push_back(std::move(row).value());
+  }
+  if (table.rows.empty()) return InvalidData(origin + " holds no rows");
+  return table;
+}
+
+namespace {
+
+constexpr double kWalkRadius = 0.45;  // Well inside 0.6 of figure 11.
+constexpr double kRunRadius = 0.9;
+constexpr double kRunFrequencyHz = 2;  // From here on the wrists command a run.
+/// The wrists turn by 20 degrees of inclination; the stick goes to 60 for it.
+constexpr double kStickPerRoll = 3;
+constexpr double kMaxAngleRad = 75 * kPi / 180;
+constexpr double kPressS = 0.1;
+
+bool Jumps(const wrists::Segment& segment) {
+  return segment.amplitude_mps2 > 0 && std::abs(WrapAngle(segment.phase_rad)) < kPi / 2;
+}
+
+/// Where the stick stands in this stretch: right, front.
+std::pair<double, double> Place(const wrists::Segment& segment) {
+  if (segment.amplitude_mps2 == 0) return {0, 0};
+  const bool runs = !Jumps(segment) && segment.frequency_hz > kRunFrequencyHz;
+  const double radius = runs ? kRunRadius : kWalkRadius;
+  const double angle_rad =
+      std::clamp(kStickPerRoll * segment.roll_rad, -kMaxAngleRad, kMaxAngleRad);
+  return {radius * std::sin(angle_rad), radius * std::cos(angle_rad)};
+}
+
+}  // namespace
+
+StickMotion::StickMotion(std::vector<wrists::Segment> segments, double blend_s)
+    : segments_(std::move(segments)), blend_s_(blend_s) {
+  for (const wrists::Segment& segment : segments_) duration_s_ += segment.duration_s;
+}
+
+StickState StickMotion::At(double t_s) const {
+  double into_s = std::max(0.0, t_s);
+  std::size_t i = 0;
+  for (; i + 1 < segments_.size() && into_s >= segments_[i].duration_s; ++i) {
+    into_s -= segments_[i].duration_s;
+  }
+  const wrists::Segment& segment = segments_[i];
+  const auto [from_x, from_y] = Place(segments_[i == 0 ? 0 : i - 1]);
+  const auto [x, y] = Place(segment);
+  const double share = into_s < blend_s_ ? into_s / blend_s_ : 1;
+  StickState state;
+  state.x = from_x + (x - from_x) * share;
+  state.y = from_y + (y - from_y) * share;
+  state.jump = Jumps(segment) && std::fmod(into_s, 1 / segment.frequency_hz) < kPressS;
+  return state;
+}
+
+namespace {
+
+constexpr int kRepeats = 12;
+constexpr double kLeastHeldS = 1.0, kMostHeldS = 1.8;
+constexpr double kLeastRad = 15 * kPi / 180, kMostRad = 45 * kPi / 180;
+constexpr double kGripChangeS = 0.25;
+/// Button bits of the Wiimote.
+constexpr std::uint16_t kButtonA = 0x0008, kButtonB = 0x0004;
+
+/// Signs of roll and pitch, and the buttons.
+std::vector<BuilderGrip> Kinds(bool pits) {
+  std::vector<BuilderGrip> kinds{{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {0, 1, true}, {0, -1, true}, {}};
+  if (pits) kinds.push_back({0, 0, false, true});
+  return kinds;
+}
+
+}  // namespace
+
+BuilderScript::BuilderScript(std::uint64_t seed, bool pits) {
+  noise::Random random(seed);
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    std::vector<BuilderGrip> kinds = Kinds(pits);
+    while (!kinds.empty()) {
+      const auto drawn =
+          std::min(kinds.size() - 1,
+                   static_cast<std::size_t>(random.Uniform(0, static_cast<double>(kinds.size()))));
+      BuilderGrip grip = kinds[drawn];
+      kinds.erase(kinds.begin() + static_cast<std::ptrdiff_t>(drawn));
+      const double inclination_rad = random.Uniform(kLeastRad, kMostRad);
+      grip.roll_rad *= inclination_rad;
+      grip.pitch_rad *= inclination_rad;
+      stretches_.push_back({duration_s_, grip});
+      duration_s_ += random.Uniform(kLeastHeldS, kMostHeldS);
+    }
+  }
+}
+
+BuilderGrip BuilderScript::At(double t_s) const {
+  const double into_s = std::fmod(std::max(0.0, t_s), duration_s_);
+  std::size_t i = 0;
+  while (i + 1 < stretches_.size() && stretches_[i + 1].from_s <= into_s) ++i;
+  const BuilderGrip& before = stretches_[i == 0 ? stretches_.size() - 1 : i - 1].grip;
+  BuilderGrip grip = stretches_[i].grip;
+  const double share = std::min(1.0, (into_s - stretches_[i].from_s) / kGripChangeS);
+  grip.roll_rad = before.roll_rad + share * (grip.roll_rad - before.roll_rad);
+  grip.pitch_rad = before.pitch_rad + share * (grip.pitch_rad - before.pitch_rad);
+  return grip;
+}
+
+Result<Plan> PlanBuilder(bool pits, const Common& common) {
+  const auto link = ParseLink(common.link);
+  if (!link) return link.error();
+  const std::uint64_t seed = DeviceSeed(common, 3);
+  const auto script = std::make_shared<const BuilderScript>(seed, pits);
+  const auto motion = [script, random = noise::Random(seed)](double t_s) mutable {
+    const BuilderGrip grip = script->At(t_s);
+    virtual_devices::WiimoteSensors sensors;
+    sensors.specific_force_S_mps2 = wrists::InclinedGravity(grip.roll_rad, grip.pitch_rad);
+    for (int axis = 0; axis < 3; ++axis) {
+      sensors.specific_force_S_mps2[axis] += wrists::SensorModel().noise_mps2 * random.Normal();
+    }
+    sensors.buttons = static_cast<std::uint16_t>((grip.a ? kButtonA : 0) | (grip.b ? kButtonB : 0));
+    return sensors;
+  };
+  Plan plan;
+  plan.devices.push_back(MakeWiimote(common, *link, 3, stream::DeviceRole::kEditor, motion));
+  plan.duration_s = common.seconds;
+  return plan;
+}
+
+namespace {
+
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
+/// After the last report, so that its tick is made before the devices detach.
+constexpr double kAfterLast_s = 0.1;
+
+/// One stay of a device: from when it attached until it was lost.
+struct Stay {
+  v1::DeviceStatus status;
+  std::int64_t first_ns = 0;
+  std::int64_t last_ns = 0;
+  bool lost = false;
+  std::vector<RecordedReport> reports;
+};
+
+/// Collects the stays of all devices out of footingd's ticks.
+class StayCollector {
+ public:
+  void Take(const v1::Tick& tick) {
+    for (const v1::RawReport& raw : tick.raw().reports()) Take(raw);
+    for (const v1::DeviceStatus& status : tick.status().devices()) {
+      Stay* const stay = Current(status.device());
+      if (status.state() == v1::DEVICE_STATE_LOST) {
+        if (stay != nullptr) stay->lost = true;
+      } else {
+        statuses_[status.device()] = status;
+        // What a device is becomes known as it answers.
+        if (stay != nullptr) stay->status = status;
+      }
+    }
+  }
+
+  std::vector<Stay>& stays() { return stays_; }
+
+ private:
+  Stay* Current(std::uint32_t device) {
+    const auto found = current_.find(device);
+    if (found == current_.end() || stays_[found->second].lost) return nullptr;
+    return &stays_[found->second];
+  }
+
+  void Take(const v1::RawReport& raw) {
+    Stay* stay = Current(raw.device());
+    if (stay == nullptr) {
+      current_[raw.device()] = stays_.size();
+      stay = &stays_.emplace_back();
+      stay->first_ns = raw.received_ns();
+      stay->status = statuses_[raw.device()];
+    }
+    stay->last_ns = std::max(stay->last_ns, raw.received_ns());
+    RecordedReport report;
+    report.time_s = NanosecondsToSeconds(raw.received_ns());  // From the start: see Plan.
+    report.bytes.assign(raw.report().begin(), raw.report().end());
+    report.to_device = raw.to_device();
+    report.feature = raw.feature();
+    stay->reports.push_back(std::move(report));
+  }
+
+  std::vector<Stay> stays_;
+  std::map<std::uint32_t, std::size_t> current_;  ///< Of a device: its newest stay.
+  std::map<std::uint32_t, v1::DeviceStatus> statuses_;
+};
+
+SimulatedDevice MakeDevice(Stay& stay, std::int64_t start_ns) {
+  const double start_s = NanosecondsToSeconds(start_ns);
+  for (RecordedReport& report : stay.reports) {
+    v1::RawReport raw;
+    raw.set_report(report.bytes.data(), report.bytes.size());
+    raw.set_to_device(report.to_device);
+    raw.set_feature(report.feature);
+    report.feature = recording::IsFeature(raw, stay.status);
+    report.time_s -= start_s;
+  }
+  const recording::RecordedIdentity recorded = recording::IdentityOf(stay.status);
+  const std::string& stored = stay.status.stored_calibration();
+  RecordedDevice device(
+      {recorded.bus, recorded.vendor, recorded.product, recorded.name, recorded.serial},
+      NanosecondsToSeconds(stay.first_ns - start_ns),
+      stay.lost ? NanosecondsToSeconds(stay.last_ns - start_ns) : kNever_s, stay.reports,
+      {stored.begin(), stored.end()});
+  if (!device.has_handshake()) {
+    log::Warning("the recording begins after " + recorded.serial +
+                 " was set up: its calibration is not in it");
+  }
+  return SimulatedDevice(std::move(device), static_cast<stream::DeviceRole>(stay.status.role()));
+}
+
+}  // namespace
+
+Result<Plan> PlanReplay(const std::string& path, const Common& common) {
+  const auto session = recording::RecordedSession::Open(path);
+  if (!session) return session.error();
+  const recording::RecordedServer* server = session->Find("footingd");
+  if (server == nullptr) return InvalidData(path + " has no messages of footingd");
+  StayCollector collector;
+  for (const recording::RecordedTick& recorded : server->ticks) {
+    const auto tick =
+        recording::ReadTick(recorded, {v1::Tick::kStatusFieldNumber, v1::Tick::kRawFieldNumber});
+    if (!tick) return InvalidData(path + ": " + tick.error().message);
+    collector.Take(*tick);
+  }
+  std::vector<Stay>& stays = collector.stays();
+  std::erase_if(stays, [](const Stay& stay) { return stay.status.serial().empty(); });
+  if (stays.empty()) return InvalidData(path + " holds no raw report of a device");
+  const auto by_start = [](const Stay& a, const Stay& b) { return a.first_ns < b.first_ns; };
+  const std::int64_t start_ns = std::min_element(stays.begin(), stays.end(), by_start)->first_ns;
+  Plan plan;
+  for (Stay& stay : stays) {
+    plan.devices.push_back(MakeDevice(stay, start_ns));
+    plan.duration_s =
+        std::max(plan.duration_s, NanosecondsToSeconds(stay.last_ns - start_ns) + kAfterLast_s);
+  }
+  plan.duration_s /= common.rate_scale;
+  if (common.seconds > 0) plan.duration_s = std::min(plan.duration_s, common.seconds);
   return plan;
 }
 

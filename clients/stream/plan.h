@@ -10,6 +10,7 @@
 #include "common/base/result.h"
 #include "common/stream/contacts.h"
 #include "common/stream/hands.h"
+#include "common/virtual/devices/accelerometer.h"
 
 namespace footing::stream_client {
 
@@ -80,5 +81,75 @@ std::uint64_t DeviceSeed(const Common& common, std::uint64_t device);
 SimulatedDevice MakeWiimote(const Common& common, virtual_devices::LinkQuality link,
                             std::uint64_t device, stream::DeviceRole role,
                             SimulatedDevice::WiimoteMotion motion, const Ports& ports = {});
+
+/// A CSV table of numbers with a fixed number of columns; the first line may be a header.
+struct Table {
+  std::vector<std::vector<double>> rows;
+};
+
+/// Parses it. Errors name `origin`, the line and what is wrong with it: a column too few or too
+/// many, a text that is not a finite number.
+Result<Table> ParseTable(const std::string& text, std::size_t columns, const std::string& origin);
+
+/// What a user of the joystick interface does: a Nunchuk's stick and a Wiimote's button.
+struct StickState {
+  double x = 0;  ///< -1 left to 1 right.
+  double y = 0;  ///< -1 back to 1 front.
+  bool jump = false;
+};
+
+/// The script of the wrists, performed with stick and button (gait paper, section 7, "Joystick
+/// Interface" and figure 11): inside a radius of 0.6 of 1.0 the character walks, outside it runs;
+/// to the side it turns; a button makes it jump. Hands that swing in phase become one press a
+/// cycle, an inclination to the right (left side up) the stick pushed to the right.
+class StickMotion {
+ public:
+  /// The stick needs `blend_s` to get to its new place. `segments` not empty.
+  StickMotion(std::vector<wrists::Segment> segments, double blend_s);
+
+  /// At t_s since the start; before it the first instant, after the end the last segment goes on.
+  StickState At(double t_s) const;
+  double DurationSeconds() const { return duration_s_; }
+
+ private:
+  std::vector<wrists::Segment> segments_;
+  double blend_s_;
+  double duration_s_ = 0;
+};
+
+/// How a synthetic player holds the Wiimote with which the terrain game's track is built.
+struct BuilderGrip {
+  double roll_rad = 0;   ///< Left side higher is positive: a curve to the right.
+  double pitch_rad = 0;  ///< Front higher is positive: up.
+  bool a = false;        ///< A step in place of a slope.
+  bool b = false;        ///< A pit.
+};
+
+/// A seeded sequence of grips: slopes, curves and steps to both sides, pits if wanted, and level
+/// ground, each held for 1 to 1.8 s at an inclination of 15 to 45 degrees. Every one of them comes
+/// once before any comes again.
+class BuilderScript {
+ public:
+  BuilderScript(std::uint64_t seed, bool pits);
+
+  /// At t_s since the start; it changes over in 0.25 s. Without end: it begins again.
+  BuilderGrip At(double t_s) const;
+  double duration_s() const { return duration_s_; }
+
+ private:
+  struct Stretch {
+    double from_s = 0;
+    BuilderGrip grip;
+  };
+  std::vector<Stretch> stretches_;
+  double duration_s_ = 0;
+};
+
+/// One Wiimote in the role editor.
+Result<Plan> PlanBuilder(bool pits, const Common& common);
+
+/// The devices of a recording of footingd, from their first report to their last. InvalidData when
+/// it holds no raw report; a device whose handshake was not recorded is named in the log.
+Result<Plan> PlanReplay(const std::string& path, const Common& common);
 
 }  // namespace footing::stream_client

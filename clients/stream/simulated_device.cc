@@ -1,12 +1,160 @@
 #include "clients/stream/simulated_device.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "common/base/units.h"
+#include "common/stream/product_ids.h"
+#include "common/virtual/devices/wiimote.h"
 
 namespace footing::stream_client {
+
+using virtual_devices::Report;
+
+namespace {
+
+// Reports of a Wiimote and a Balance Board (wiibrew.org).
+constexpr std::uint8_t kStatusRequest = 0x15;
+constexpr std::uint8_t kReadRequest = 0x17;
+constexpr std::uint8_t kStatusReply = 0x20;
+constexpr std::uint8_t kReadReply = 0x21;
+constexpr std::uint8_t kAcknowledgement = 0x22;
+constexpr std::uint8_t kNothingThere = 0x07;  // In the low half of a read reply's fourth byte.
+constexpr std::uint8_t kMoveCalibrationFeature = 0x10;
+
+/// A request without the motor's bit, which every output report has in its second byte.
+Report RequestOf(std::span<const std::uint8_t> output) {
+  Report request(output.begin(), output.end());
+  if (request.size() > 1) request[1] &= 0xfe;
+  return request;
+}
+
+bool IsAnswer(std::uint8_t id) {
+  return id == kStatusReply || id == kReadReply || id == kAcknowledgement;
+}
+
+/// The answer that belongs to a request.
+bool Fits(const Report& request, const Report& answer) {
+  switch (request[0]) {
+    case kStatusRequest:
+      return answer[0] == kStatusReply;
+    case kReadRequest:
+      return answer[0] == kReadReply;
+    default:
+      return answer[0] == kAcknowledgement && answer.size() > 3 && answer[3] == request[0];
+  }
+}
+
+Report RefusedRead(std::span<const std::uint8_t> request) {
+  Report reply(22, 0);
+  reply[0] = kReadReply;
+  reply[3] = 0xf0 | kNothingThere;
+  if (request.size() > 4) {
+    reply[4] = request[3];
+    reply[5] = request[4];
+  }
+  return reply;
+}
+
+/// The first of the answers, kept when it is the only one.
+template <typename Value>
+Value NextOf(std::deque<Value>& answers) {
+  Value answer = answers.front();
+  if (answers.size() > 1) answers.pop_front();
+  return answer;
+}
+
+}  // namespace
+
+RecordedDevice::RecordedDevice(virtual_devices::Identity identity, double attaches_s,
+                               double detaches_s, const std::vector<RecordedReport>& reports,
+                               const std::vector<std::uint8_t>& stored_calibration)
+    : identity_(std::move(identity)), attaches_s_(attaches_s), detaches_s_(detaches_s) {
+  Learn(reports);
+  if (stored_calibration.empty() || identity_.vendor != stream::kVendorSony || !features_.empty())
+    return;
+  const auto model = identity_.product == stream::kProductZcm2 ? virtual_devices::MoveModel::kZcm2
+                                                               : virtual_devices::MoveModel::kZcm1;
+  virtual_devices::PsMove move(0, model, stored_calibration);
+  constexpr int kMostPieces = 3;
+  for (int piece = 0; piece < kMostPieces; ++piece) {
+    if (auto feature = move.Feature(kMoveCalibrationFeature, SIZE_MAX)) {
+      features_[kMoveCalibrationFeature].push_back(std::move(*feature));
+    }
+  }
+}
+
+void RecordedDevice::Learn(const std::vector<RecordedReport>& reports) {
+  /// A request and where its answer is being collected.
+  struct Asked {
+    Report request;
+    std::size_t number = 0;
+  };
+  std::vector<Asked> open;
+  for (const RecordedReport& report : reports) {
+    if (report.feature) {
+      if (report.to_device || report.bytes.empty()) continue;
+      features_[report.bytes[0]].push_back(report.bytes);
+    } else if (report.bytes.empty()) {
+      continue;
+    } else if (report.to_device) {
+      Report request = RequestOf(report.bytes);
+      // One read at a time, and an acknowledgement is of the newest report of its id.
+      std::erase_if(open, [&](const Asked& asked) { return asked.request[0] == request[0]; });
+      auto& answers = answers_[request];
+      answers.emplace_back();
+      open.push_back({std::move(request), answers.size() - 1});
+    } else if (!IsAnswer(report.bytes[0])) {
+      data_.push_back(report);
+    } else {
+      const auto asked = std::find_if(open.begin(), open.end(), [&](const Asked& one) {
+        return Fits(one.request, report.bytes);
+      });
+      if (asked == open.end()) {
+        // A status of its own accord says that something was plugged or pulled.
+        if (report.bytes[0] == kStatusReply) data_.push_back(report);
+        continue;
+      }
+      answers_[asked->request][asked->number].push_back(report.bytes);
+      if (report.bytes[0] != kReadReply) open.erase(asked);
+    }
+  }
+  // A request that was lost is asked again: what answered it then answers it at once now.
+  for (auto& [request, answers] : answers_) {
+    std::erase_if(answers, [](const Answer& answer) { return answer.empty(); });
+  }
+  std::erase_if(answers_, [](const auto& entry) { return entry.second.empty(); });
+}
+
+std::vector<Report> RecordedDevice::HandleOutput(std::int64_t,
+                                                 std::span<const std::uint8_t> output) {
+  if (output.empty()) return {};
+  const auto found = answers_.find(RequestOf(output));
+  if (found != answers_.end()) return NextOf(found->second);
+  if (output[0] == kReadRequest) return {RefusedRead(output)};
+  return {};
+}
+
+Report RecordedDevice::Feature(std::uint8_t id, std::size_t size) {
+  const auto found = features_.find(id);
+  if (found == features_.end()) return {};
+  // Pieces come in turn; the host that asks again gets them all again.
+  Report feature = found->second.front();
+  found->second.pop_front();
+  found->second.push_back(feature);
+  feature.resize(std::min(size, feature.size()));
+  return feature;
+}
+
+std::optional<double> RecordedDevice::NextTime() const {
+  if (next_ >= data_.size()) return std::nullopt;
+  return data_[next_].time_s;
+}
+
+Report RecordedDevice::Take() { return data_[next_++].bytes; }
 
 using virtual_devices::Report;
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/anonymous.h"
 #include "clients/study/report/trials.h"
+#include "clients/study/study_tables.h"
 #include "common/base/result.h"
 
 namespace footing::study::bundle {

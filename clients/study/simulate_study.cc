@@ -1,28 +1,284 @@
 #include "clients/study/simulate_study.h"
 
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "clients/study/plan/phases.h"
 #include "clients/study/session/journal.h"
-#include "clients/study/session/lock.h"
-#include "clients/study/session/study_folder.h"
-#include "clients/study/progress_text.h"
-#include "clients/study/simulated_session.h"
+#include "common/base/text.h"
+#include "common/base/units.h"
 #include "common/cli/cli.h"
 #include "common/runtime/clock.h"
-#include "common/base/units.h"
 
 namespace footing::study::simulate {
+namespace {
+
+constexpr double kStartsWithinS = 30;
+/// Turns between two looks at whether the session has ended.
+constexpr int kLookEvery = 256;
+constexpr double kLookEveryS = 0.02;
+
+/// A folder for sockets, whose paths must be short; removed with all it holds.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string path = (std::filesystem::temp_directory_path() / "footing-XXXXXX").string();
+    if (::mkdtemp(path.data()) != nullptr) path_ = path;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::string LastLine(const std::string& path) {
+  std::ifstream in(path);
+  std::string line, last;
+  while (std::getline(in, line)) last = line;
+  return last;
+}
+
+/// The processes of one session and the time that they share.
+class Run {
+ public:
+  /// In real time there is no timekeeper.
+  Run(const SimulatedSession& simulated, const std::string& sockets,
+      std::optional<clock::Timekeeper> keeper)
+      : simulated_(simulated),
+        sockets_(sockets),
+        keeper_(std::move(keeper)),
+        tail_(journal::JournalPath(simulated.study_folder, simulated.session.participant)) {}
+
+  Result<void> Start() {
+    const auto sensor = StartChild(
+        "footingd", {"--listen", Socket("sensor"), "--source", "stream:" + Socket("devices")});
+    if (!sensor) return sensor;
+    const auto simulation =
+        StartChild("footing-sim", {"--sensor", Socket("sensor"), "--listen", Socket("simulation")});
+    if (!simulation) return simulation;
+    if (const auto user = ChangeTo(simulated_.session.interfaces.front()); !user) return user;
+    return StartChild("footing-study",
+                      {"run", simulated_.protocol_path, "--participant",
+                       simulated_.session.participant, "--unattended", "--folder",
+                       simulated_.study_folder, "--seed", std::to_string(simulated_.seed),
+                       "--sensor", Socket("sensor"), "--simulation", Socket("simulation")});
+  }
+
+  /// Until the session has ended.
+  Result<void> Finish() {
+    Child& study = children_.at("footing-study");
+    for (int turn = 0;; ++turn) {
+      const bool given = Pass();
+      if (!given || !keeper_ || turn % kLookEvery == 0) {
+        if (const auto code = study.ExitCode()) return *code == 0 ? Result<void>() : Broken();
+      }
+      if (!given) return Failure("simulated time has stalled; " + Broken().message);
+      if (const auto done = Follow(); !done) return done;
+    }
+  }
+
+ private:
+  std::int64_t NowNs() const { return keeper_ ? keeper_->now_ns() : clock::MonotonicNs(); }
+  /// Some time passes; false when it cannot.
+  bool Pass() {
+    if (keeper_) return keeper_->GiveTurn();
+    clock::SleepUntil(clock::MonotonicNs() + SecondsToNanoseconds(kLookEveryS));
+    return true;
+  }
+
+  std::string Socket(const std::string& name) const { return "unix:" + sockets_ + "/" + name; }
+  std::string Log(const std::string& program) const {
+    return simulated_.study_folder + "/" + program + ".log";
+  }
+
+  std::string Seed(const std::string& purpose) const {
+    return std::to_string(1 + plan::Draw(simulated_.seed, purpose).Below(1'000'000'000));
+  }
+
+  /// Starts a program, whose first turn comes after those of the others that are due.
+  Result<void> StartChild(const std::string& program, std::vector<std::string> words) {
+    std::map<std::string, std::string> environment = {{"XDG_STATE_HOME", sockets_}};
+    if (keeper_) environment[clock::kTimekeeperVariable] = sockets_ + "/time";
+    auto child = Child::Start({program, std::move(words), std::move(environment), Log(program)});
+    if (!child) return child.error();
+    const auto place = children_.insert_or_assign(program, std::move(*child)).first;
+    const auto gone = [&] { return place->second.ExitCode().has_value(); };
+    if (keeper_ && !keeper_->AwaitFollower(kStartsWithinS, gone)) {
+      return Failure(program + " does not start: " + LastLine(Log(program)));
+    }
+    return {};
+  }
+
+  /// Gives the participant the devices of an interface in place of those of the one before.
+  Result<void> ChangeTo(const std::string& interface) {
+    interface_ = interface;
+    children_.erase("footing-stream");
+    const std::string user = "user " + simulated_.session.participant;
+    // Devices of other serials: footingd remembers the role of each.
+    return StartChild("footing-stream",
+                      {"user", "--interface", interface, "--turn-by", simulated_.turn_by, "--see",
+                       Socket("simulation"), "--to", Socket("devices"), "--style-seed", Seed(user),
+                       "--seed", Seed(user + " " + interface)});
+  }
+
+  /// What the journal says since the last look.
+  Result<void> Follow() {
+    for (const records::Event& event : tail_.ReadNew()) {
+      if (event.kind != records::EventKind::kPhaseStarted) continue;
+      std::cerr << simulated_.session.participant << ": " << event.Text("phase") << " begins after "
+                << text::Fixed(NanosecondsToSeconds(NowNs() - begin_ns_), 0)
+                << (keeper_ ? " s of simulated time" : " s") << std::endl;
+      const std::string interface = event.Text("interface");
+      if (interface.empty() || interface == interface_) continue;
+      if (const auto done = ChangeTo(interface); !done) return done;
+    }
+    return {};
+  }
+
+  Error Broken() const {
+    return Failure("the session of " + simulated_.session.participant +
+                   " ended: " + LastLine(Log("footing-study")) + "; its files are in " +
+                   simulated_.study_folder);
+  }
+
+  const SimulatedSession& simulated_;
+  const std::string sockets_;
+  std::optional<clock::Timekeeper> keeper_;
+  const std::int64_t begin_ns_ = NowNs();
+  JournalTail tail_;
+  std::string interface_;
+  std::map<std::string, Child> children_;
+};
+
+}  // namespace
+
+Result<void> Simulate(const SimulatedSession& simulated) {
+  const TemporaryFolder sockets;
+  if (sockets.path().empty()) return Failure("cannot make a temporary folder for sockets");
+  if (const auto done = journal::MakeFolder(simulated.study_folder); !done) return done;
+  std::optional<clock::Timekeeper> keeper;
+  if (!simulated.real_time) {
+    auto made = clock::Timekeeper::Listen(sockets.path() + "/time", clock::WallNs());
+    if (!made) return made.error();
+    keeper.emplace(std::move(made).value());
+  }
+  Run run(simulated, sockets.path(), std::move(keeper));
+  if (const auto done = run.Start(); !done) return done;
+  return run.Finish();
+}
+
+std::vector<records::Event> JournalTail::ReadNew() {
+  struct stat file {};
+  if (::stat(path_.c_str(), &file) != 0) return {};
+  if (static_cast<std::size_t>(file.st_size) <= read_bytes_) return {};
+  std::ifstream in(path_, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(read_bytes_));
+  std::vector<records::Event> events;
+  std::string line;
+  while (std::getline(in, line) && !in.eof()) {  // A line without its end is still being written.
+    read_bytes_ += line.size() + 1;
+    if (auto event = records::ParseLine(line)) events.push_back(std::move(event).value());
+  }
+  return events;
+}
+
+namespace {
+
+constexpr int kNotStarted = 127;
+
+int CodeOf(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+/// In the child: becomes the program.
+[[noreturn]] void Become(const std::string& path, const Child::Options& options) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int input = ::open("/dev/null", O_RDONLY);
+  const int log = ::open(options.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (input < 0 || log < 0) ::_exit(kNotStarted);
+  ::dup2(input, STDIN_FILENO);
+  ::dup2(log, STDOUT_FILENO);
+  ::dup2(log, STDERR_FILENO);
+  for (const auto& [name, value] : options.environment) {
+    ::setenv(name.c_str(), value.c_str(), 1);
+  }
+  std::vector<char*> arguments{const_cast<char*>(path.c_str())};
+  for (const std::string& word : options.words) {
+    arguments.push_back(const_cast<char*>(word.c_str()));
+  }
+  arguments.push_back(nullptr);
+  ::execv(path.c_str(), arguments.data());
+  ::_exit(kNotStarted);
+}
+
+}  // namespace
+
+Result<Child> Child::Start(const Options& options) {
+  std::error_code error;
+  const auto own = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path folder =
+      options.folder.empty() ? own.parent_path() : std::filesystem::path(options.folder);
+  const std::string path = (folder / options.program).string();
+  if (error || ::access(path.c_str(), X_OK) != 0) {
+    return Failure("cannot start " + path + ": " +
+                   (error ? error.message() : std::strerror(errno)) + "; build or install it");
+  }
+  const pid_t process = ::fork();
+  if (process < 0) return Failure(std::string("fork: ") + std::strerror(errno));
+  if (process == 0) Become(path, options);
+  return Child(process);
+}
+
+Child::Child(Child&& other) noexcept
+    : process_(std::exchange(other.process_, -1)), exit_code_(other.exit_code_) {}
+
+Child& Child::operator=(Child&& other) noexcept {
+  std::swap(process_, other.process_);
+  std::swap(exit_code_, other.exit_code_);
+  return *this;
+}
+
+std::optional<int> Child::ExitCode() {
+  int status = 0;
+  if (!exit_code_ && process_ > 0 && ::waitpid(process_, &status, WNOHANG) == process_) {
+    exit_code_ = CodeOf(status);
+  }
+  return exit_code_;
+}
+
+void Child::Kill() {
+  if (process_ <= 0 || ExitCode()) return;
+  ::kill(process_, SIGKILL);
+  int status = 0;
+  while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  exit_code_ = CodeOf(status);
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,6 +409,27 @@ Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options) {
     times.push_back({session->participant, (*time)->simulated_s, false});
   }
   return times;
+}
+
+namespace {
+
+constexpr double kInMinutesFromS = 90, kStepS = 10;
+
+std::string About(double left_s) {
+  if (left_s >= kInMinutesFromS) return text::Fixed(left_s / 60, 0) + " min";
+  return text::Fixed(std::max(1.0, std::ceil(left_s / kStepS)) * kStepS, 0) + " s";
+}
+
+}  // namespace
+
+std::string ProgressText(const StudyProgress& progress) {
+  const int left = progress.all - progress.ended;
+  std::string line = ", " + std::to_string(progress.ended) + " of " + std::to_string(progress.all) +
+                     (progress.all == 1 ? " session" : " sessions");
+  if (left <= 0) return line;
+  // As many as run at once share what is left; each of them is under way already.
+  const double left_s = progress.mean_s * left / std::min(left, std::max(1, progress.at_once));
+  return line + "; about " + About(left_s) + " left";
 }
 
 }  // namespace footing::study::simulate

@@ -1,13 +1,78 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <sys/types.h>
+
 #include "clients/study/plan/phases.h"
+#include "clients/study/report/event.h"
 #include "common/base/result.h"
 
 namespace footing::study::simulate {
+
+/// One session of a study without people, devices or waiting.
+struct SimulatedSession {
+  std::string protocol_path;
+  std::string study_folder;  ///< Of this session alone; must not exist.
+  plan::Session session;
+  std::uint64_t seed = 1;        ///< Of the participant's style and answers.
+  bool real_time = false;        ///< On the host's time, as a live session: its latencies are real.
+  std::string turn_by = "head";  ///< What turns with the interface leg: head, feet or trunk.
+};
+
+/// Runs footingd, footing-sim, footing-stream and `footing-study run --unattended` as processes of
+/// their own on simulated time: one of them works at a time, and where all wait the time goes on at
+/// once. The participant is a synthetic user who changes the devices whenever the session comes to
+/// another interface. Equal seeds give equal journals, but for the date. In real time they wait as
+/// ever. Failure with what the session said last; then its files are still there.
+Result<void> Simulate(const SimulatedSession& simulated);
+
+/// What another program appends to a journal.
+class JournalTail {
+ public:
+  explicit JournalTail(std::string path) : path_(std::move(path)) {}
+
+  /// The whole lines since the last call; none while there is no file.
+  std::vector<records::Event> ReadNew();
+
+ private:
+  std::string path_;
+  std::size_t read_bytes_ = 0;
+};
+
+/// Another program as a child process that never outlives this one.
+class Child {
+ public:
+  struct Options {
+    std::string program;
+    std::vector<std::string> words;
+    std::map<std::string, std::string> environment;  ///< Added to this process's own.
+    std::string log;          ///< File of both its outputs; written from its start.
+    std::string folder = {};  ///< Where the program is; empty: in the folder of this one.
+  };
+  static Result<Child> Start(const Options& options);
+
+  Child(Child&& other) noexcept;
+  Child& operator=(Child&& other) noexcept;
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() { Kill(); }
+
+  /// The exit code once it has ended, by itself or by a signal (128 + signal); does not wait.
+  std::optional<int> ExitCode();
+  /// At once, without a goodbye; returns when it is gone.
+  void Kill();
+
+ private:
+  explicit Child(pid_t process) : process_(process) {}
+  pid_t process_ = -1;
+  std::optional<int> exit_code_;
+};
 
 struct StudyOptions {
   std::string protocol_path;
@@ -31,5 +96,15 @@ struct SessionTime {
 /// whole once it has ended, so a run that is interrupted can be run again. A usage error where the
 /// folder has the session of a person.
 Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options);
+
+/// How far a simulated study is, when one of its sessions has just ended.
+struct StudyProgress {
+  int ended = 0, all = 0;  ///< Sessions of this run.
+  int at_once = 1;         ///< As many run beside each other.
+  double mean_s = 0;       ///< Wall time of a session, mean of those that have ended.
+};
+
+/// ", 3 of 16 sessions; about 4 min left"; after the last one the count alone.
+std::string ProgressText(const StudyProgress& progress);
 
 }  // namespace footing::study::simulate

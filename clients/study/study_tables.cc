@@ -2,14 +2,62 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <set>
+#include <string>
 #include <tuple>
+#include <utility>
 
-#include "common/recording/tables.h"
+#include "clients/study/plan/phases.h"
+#include "common/base/text.h"
+#include "common/recording/bids_tables.h"
 #include "common/stream/trial.h"
-#include "common/base/number.h"
 
 namespace footing::study::bundle {
+namespace {
+
+constexpr const char* kHeader = "number,code";
+
+}  // namespace
+
+Result<ParticipantKey> ParticipantKey::Parse(std::string_view text, const std::string& file) {
+  text::Lines lines(text, file);
+  const auto header = lines.NextFull();
+  if (!header || *header != kHeader) {
+    return lines.Fault(std::string("the first line must be \"") + kHeader + "\"");
+  }
+  ParticipantKey key;
+  std::map<std::size_t, bool> taken;
+  while (const auto line = lines.NextFull()) {
+    const auto cells = text::Cells(*line);
+    const auto number = cells.size() == 2 ? text::ToCount(cells[0]) : std::nullopt;
+    if (!number || *number == 0) return lines.Fault("it must have a number and a code");
+    const bool fresh = taken.emplace(*number, true).second &&
+                       key.number_of_.emplace(std::string(cells[1]), *number).second;
+    if (!fresh) return lines.Fault("its number or its code stands above, too");
+  }
+  return key;
+}
+
+void ParticipantKey::Add(std::vector<std::string> codes, std::uint64_t seed) {
+  std::erase_if(codes, [this](const std::string& code) { return number_of_.count(code) != 0; });
+  plan::Draw(seed, "numbers of participants").Shuffle(codes);
+  std::size_t last = 0;
+  for (const auto& [code, number] : number_of_) last = std::max(last, number);
+  for (const std::string& code : codes) number_of_[code] = ++last;
+}
+
+std::string ParticipantKey::SubjectOf(const std::string& code) const {
+  const std::string number = std::to_string(number_of_.at(code));
+  return "sub-" + (number.size() < 2 ? "0" + number : number);
+}
+
+std::string ParticipantKey::Text() const {
+  std::string text = std::string(kHeader) + "\n";
+  for (const auto& [code, number] : number_of_) text += std::to_string(number) + "," + code + "\n";
+  return text;
+}
+
 namespace {
 
 using bids::Column;
@@ -182,6 +230,71 @@ DocumentedTable TrialsTable(const std::vector<Records>& people, const Participan
                    [](const auto& a, const auto& b) { return a[0] < b[0]; });
   table.tsv = Tsv(rows);
   return table;
+}
+
+namespace {
+
+std::string IdOf(const recording::RecordedSession& session) {
+  for (const mcap::Metadata& one : session.metadata()) {
+    const auto id = one.values.find("trial");
+    if (one.name == "trial" && id != one.values.end()) return id->second;
+  }
+  return "";
+}
+
+}  // namespace
+
+Result<bids::RecordedMotion> ReadTrial(const recording::RecordedSession& session,
+                                       const records::Trial& trial) {
+  bids::Choice choice{IdOf(session), {}, /*with_role=*/true};
+  if (choice.trial.empty()) return InvalidData(session.path() + ": it has no trial marks");
+  if (session.Find("footing-sim") == nullptr) {
+    return InvalidData(session.path() + " has no messages of footing-sim");
+  }
+  for (const records::Failure& one : trial.failures) {
+    if (one.undone) choice.undone.insert(one.number);
+  }
+  return ReadMotion(session, choice);
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// An allow-list: a key that a later footing-sim adds stays out until somebody has checked it.
+ordered_json Only(const ordered_json& object, std::initializer_list<const char*> keys) {
+  ordered_json kept = ordered_json::object();
+  for (const char* key : keys) {
+    if (object.is_object() && object.contains(key)) kept[key] = object[key];
+  }
+  return kept;
+}
+
+ordered_json AnonymousTable(ordered_json table) {
+  if (!table.is_object() || !table.contains("measured")) return table;
+  table["measured"] =
+      Only(table["measured"], {"interface", "turn_by", "by", "simulated", "ranges"});
+  return table;
+}
+
+}  // namespace
+
+ordered_json AnonymousConfig(const std::string& json) {
+  const ordered_json config = ordered_json::parse(json, nullptr, /*allow_exceptions=*/false);
+  if (!config.is_object()) return nullptr;
+  ordered_json kept = Only(config, {"program", "version", "engine", "step_s", "sha256"});
+  if (config.contains("settings")) {
+    kept["settings"] =
+        Only(config["settings"], {"turn_by", "camera_roll", "boards_may_be_left", "frame_rate_hz",
+                                  "features_timeout_s", "fall_shown_s", "put_back_distance_m"});
+  }
+  if (!config.contains("interface")) return kept;
+  const ordered_json& interface = config["interface"];
+  kept["interface"] = Only(interface, {"name", "turn_by", "camera_roll", "boards_may_be_left"});
+  if (interface.is_object() && interface.contains("table")) {
+    kept["interface"]["table"] = AnonymousTable(interface["table"]);
+  }
+  return kept;
 }
 
 }  // namespace footing::study::bundle

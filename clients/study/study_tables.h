@@ -1,14 +1,38 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "clients/study/anonymous.h"
+#include <nlohmann/json.hpp>
+
 #include "clients/study/report/trials.h"
+#include "common/base/result.h"
+#include "common/recording/recorded_motion.h"
+#include "common/recording/recorded_session.h"
 
 namespace footing::study::bundle {
+
+/// The numbers that stand for participants' codes in an exported data set, in random order. They
+/// are kept in a file outside the data set, readable by its owner alone, so that another export
+/// gives the same numbers. Without that file nobody knows who is who.
+class ParticipantKey {
+ public:
+  /// A file's text: a header, then "NUMBER,CODE" a line. InvalidData that names file and line.
+  static Result<ParticipantKey> Parse(std::string_view text, const std::string& file);
+
+  /// Gives codes that have no number yet the next ones; `seed` decides which gets which.
+  void Add(std::vector<std::string> codes, std::uint64_t seed);
+
+  /// "sub-07". The code must have a number.
+  std::string SubjectOf(const std::string& code) const;
+  std::string Text() const;
+
+ private:
+  std::map<std::string, std::size_t> number_of_;
+};
 
 /// A table of a data set with its codebook: what each column means, by its name.
 struct DocumentedTable {
@@ -26,5 +50,15 @@ DocumentedTable SurveyTable(const std::vector<records::Records>& people, const P
 /// is no recording.
 DocumentedTable TrialsTable(const std::vector<records::Records>& people, const ParticipantKey& key,
                             const std::map<const records::Trial*, std::string>& file_of);
+
+/// What a recording says of its trial, from the trial's first frame on; only devices that have a
+/// role. InvalidData when the recording has no marks of a trial, or no frame of it.
+Result<bids::RecordedMotion> ReadTrial(const recording::RecordedSession& session,
+                                       const records::Trial& trial);
+
+/// What footing-sim ran with (EffectiveConfig of the protocol) without what may name a person, a
+/// place or a file: addresses, paths, the client that gave a table, and of a measured table whom
+/// and when it was measured of. Null: the text is not such a config.
+nlohmann::ordered_json AnonymousConfig(const std::string& json);
 
 }  // namespace footing::study::bundle

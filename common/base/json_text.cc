@@ -3,8 +3,7 @@
 #include <set>
 #include <vector>
 
-#include "common/base/library_text.h"
-#include "common/base/lines.h"
+#include "common/base/text.h"
 
 namespace footing::text {
 namespace {

@@ -33,4 +33,36 @@ inline double FiniteOrZero(double value) { return std::isfinite(value) ? value :
 /// The same angle in (-pi, pi]. `radians` must be finite.
 double WrapAngle(double radians);
 
+/// `angle_rad` plus the whole turns that bring it nearest to `reference_rad`; both finite.
+inline double NearestTurn(double angle_rad, double reference_rad) {
+  return angle_rad + 2 * kPi * std::round((reference_rad - angle_rad) / (2 * kPi));
+}
+
+/// Stamps that come from files and other programs may be anything; clocks reach only some of them.
+/// Instants and offsets beyond it, 73 years either way, are refused: sums of three of them cannot
+/// overflow.
+inline constexpr std::int64_t kMostInstantNs = std::int64_t{1} << 61;
+
+constexpr bool IsInstant(std::int64_t time_ns) {
+  return time_ns >= -kMostInstantNs && time_ns <= kMostInstantNs;
+}
+constexpr bool IsInstant(std::uint64_t time_ns) {
+  return time_ns <= static_cast<std::uint64_t>(kMostInstantNs);
+}
+
+/// Conversions of instants and durations that units.h lacks: SecondsToNanoseconds there cuts off.
+inline constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+/// To the nearest nanosecond.
+inline std::int64_t RoundToNanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+
+constexpr double NanosecondsToMilliseconds(std::int64_t nanoseconds) {
+  return static_cast<double>(nanoseconds) * 1e-6;
+}
+
+/// The length of one period, cut off to nanoseconds; `rate_hz` is positive.
+constexpr std::int64_t PeriodNanoseconds(double rate_hz) {
+  return static_cast<std::int64_t>(1e9 / rate_hz);
+}
+
 }  // namespace footing

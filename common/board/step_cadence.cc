@@ -6,6 +6,71 @@
 namespace footing::board {
 namespace {
 
+/// The COP of standing is followed slowly, and not while it is on the toes.
+constexpr double kStandingS = 1.0;
+
+}  // namespace
+
+bool HeelRise::Advance(double time_s, double load_share, double forward_m, double even_s) {
+  const double elapsed_s = started_ ? time_s - time_s_ : 0;
+  if (!started_) heels_m_ = forward_m;
+  started_ = true;
+  time_s_ = time_s;
+  if (even_s <= 0) {  // A foot is lifted: the next stand is another one.
+    heels_m_ = forward_m;
+    forward_s_ = pushed_s_ = -1e9;
+    peak_ = 1;
+    return false;
+  }
+  const double risen_m = forward_m - heels_m_;
+  if (risen_m < borders_.forward_m / 2) {
+    if (!down_) down_s_ = time_s;
+    down_ = true;
+    heels_m_ += risen_m * (1 - std::exp(-elapsed_s / kStandingS));
+  }
+  if (risen_m >= borders_.forward_m) forward_s_ = time_s;
+  if (time_s - pushed_s_ > borders_.together_s) peak_ = 1;
+  if (load_share - 1 >= borders_.overshoot) pushed_s_ = time_s;
+  peak_ = std::max(peak_, load_share);
+  const double first_s = std::min(forward_s_, pushed_s_);
+  const double since_s = time_s - first_s;
+  if (!down_ || first_s < down_s_ || even_s < borders_.standing_s || since_s > borders_.together_s)
+    return false;
+  down_ = false;
+  return true;
+}
+
+namespace {
+
+constexpr double kWeighingS = 3;
+
+}  // namespace
+
+Stance StanceOn(const FootLoad& left, const FootLoad& right) {
+  const double left_n = std::max(0.0, left.load_n);
+  const double right_n = std::max(0.0, right.load_n);
+  Stance stance;
+  stance.load_n = left_n + right_n;
+  if (stance.load_n <= 0) return stance;
+  stance.left_share = left_n / stance.load_n;
+  double moment_nm = 0, load_n = 0;
+  for (const FootLoad* foot : {&left, &right}) {
+    if (!foot->cop_valid) continue;
+    moment_nm += foot->load_n * foot->cop_x_m;
+    load_n += foot->load_n;
+  }
+  if (load_n > 0) stance.forward_m = moment_nm / load_n;
+  return stance;
+}
+
+void Weight::Advance(double load_n, double elapsed_s) {
+  weighed_s_ = std::min(kWeighingS, weighed_s_ + elapsed_s);
+  const double share = weighed_s_ > elapsed_s ? elapsed_s / weighed_s_ : 1;
+  weight_n_ += share * (load_n - weight_n_);
+}
+
+namespace {
+
 /// Share of the load from which a foot takes part in standing.
 constexpr double kLoadedShare = 0.1;
 /// Both carry about alike between this share and its complement.

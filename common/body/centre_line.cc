@@ -114,4 +114,15 @@ CentrePoint CentreAhead(const stream::Track& track, const TrackPlace& place, dou
   return On(track.segments[index], std::min(along_m, track.segments[index].length_m));
 }
 
+stream::TrackSegment Placed(const Piece& piece, const stream::TrackSegment& last) {
+  stream::TrackSegment placed = stream::Following(last);
+  placed.length_m = piece.length_m;
+  placed.width_m = last.width_m;
+  placed.slope_rad = piece.slope_rad;
+  placed.heading_rad += piece.curve_rad;
+  placed.start_m.z() += piece.step_m;
+  placed.pit = piece.pit;
+  return placed;
+}
+
 }  // namespace footing::track

@@ -1,12 +1,12 @@
 #include "common/body/skeleton.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "common/base/result.h"
-#include "common/base/angle.h"
 #include "common/base/units.h"
 
 namespace footing::body {

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
 
 /// The human body as a tree of joints with masses: kinematics, centre of mass and momentum.
 ///
@@ -86,5 +87,26 @@ Eigen::Matrix3d JointRotation(const Joint& joint, PoseRef q);
 /// remaining angle is the best one about each axis in turn.
 void SetJointRotation(const Joint& joint, const Eigen::Matrix3d& R_PJ,
                       Eigen::Ref<Eigen::VectorXd> q);
+
+/// Motion files of animation have y up, z ahead and x to the left; W has x ahead, y left, z up. The
+/// one turns into the other by a cyclic change of names, so rotations keep their angles.
+inline Eigen::Vector3d FromYUp(const Eigen::Vector3d& file) { return {file(2), file(0), file(1)}; }
+inline Eigen::Vector3d ToYUp(const Eigen::Vector3d& world) {
+  return {world(1), world(2), world(0)};
+}
+inline Axis FromYUp(Axis file) { return static_cast<Axis>((static_cast<int>(file) + 1) % 3); }
+inline Axis ToYUp(Axis world) { return static_cast<Axis>((static_cast<int>(world) + 2) % 3); }
+
+/// Rz Ry Rx of three angles about the file's axes (ASF "axis a b c XYZ"), in W.
+inline Eigen::Matrix3d FromYUpXyz(const Eigen::Vector3d& angles_rad) {
+  return AxisRotation(FromYUp(Axis::kZ), angles_rad(2)) *
+         AxisRotation(FromYUp(Axis::kY), angles_rad(1)) *
+         AxisRotation(FromYUp(Axis::kX), angles_rad(0));
+}
+
+/// A vector in a Wiimote's own frame (x left, y front, z down) in the held frame of a fist, and
+/// back: x where the device points, y left, z up while its buttons face up. With the arms of a
+/// T-pose the axes of the held frame are W's.
+inline Eigen::Vector3d AsHeld(const Eigen::Vector3d& v) { return {v.y(), v.x(), -v.z()}; }
 
 }  // namespace footing::body

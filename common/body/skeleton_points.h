@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "common/body/body.h"
-#include "common/body/points.h"
+#include "common/body/kinematics.h"
 #include "common/stream/hands.h"
 
 namespace footing::body {

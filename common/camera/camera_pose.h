@@ -1,15 +1,53 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "common/camera/observations.h"
-#include "common/base/result.h"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
-/// Where a camera stands in the boards' world frame W.
+#include "common/base/result.h"
+#include "common/stream/hands.h"
+#include "common/stream/setup.h"
+
 namespace footing::camera_pose {
 
+/// Where a sphere's centre was seen, in the camera's frame C.
+struct SeenPoint {
+  Eigen::Vector3d p_C_m{0, 0, 0};
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+};
+
+/// A sphere on a point whose place in W is known.
+struct SeenMark {
+  std::string name;
+  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Of the sphere's centre.
+  SeenPoint seen;
+};
+
+/// A controller's sphere on a mark, then above the same mark with the controller standing upright.
+/// Its accelerometer measures how upright: the line between the two places is gravity's.
+struct SeenPlumb {
+  SeenPoint low, high;
+  double tilt_rad = 0;  ///< Between the controller's long axis and the vertical.
+};
+
+struct Observations {
+  std::vector<SeenMark> marks;
+  std::vector<SeenPlumb> plumbs;
+  double placement_sd_m = 0.001;  ///< Of the sphere on a mark, per axis.
+};
+
+/// Frames of a sphere at rest that are enough for a mean: half a second of a camera at 60 Hz.
+inline constexpr std::size_t kLeastFrames = 30;
+
+/// The mean of a sphere at rest. What of the frames' covariance does not show as scatter is common
+/// to all frames (blur and limb of the camera file, the same pixels) and is not averaged away.
+/// Refuses fewer than kLeastFrames, and a sphere that moved.
+Result<SeenPoint> MeanAtRest(const std::vector<SeenPoint>& frames);
+
+/// Where a camera stands in the boards' world frame W.
 using Covariance = Eigen::Matrix<double, 6, 6>;
 
 /// An estimated pose, and how well what was seen fits it.
@@ -39,5 +77,39 @@ CameraPose Fit(const Observations& observations);
 /// place, gravity that is off by more than 4 degrees, and a turn that stays uncertain by more than
 /// 1 degree.
 Result<CameraPose> Calibrate(const Observations& observations);
+
+/// What a tracker saw in its own frame, of what footingd published of it in W. Nothing where the
+/// point was not seen, or the tracker has no frame of its own.
+std::optional<SeenPoint> InTrackerFrame(const stream::HandSample& sample);
+
+/// The same sight by another calibration. A sample of a tracker without a frame stays as it is.
+stream::HandSample Recalibrated(const stream::HandSample& sample, const Eigen::Isometry3d& X_WC);
+
+/// The paper's calibration (Ha, Bai & Liu 2011, section 5.1, Figure 3): the sphere at the origin of
+/// the axes, then ahead of it, then to its left.
+struct ThreePoses {
+  SeenPoint origin, ahead, left;
+  Eigen::Vector3d p_WO_m{0, 0, 0};  ///< Where in W the sphere was in the first pose.
+  /// Distances of the other two from the first, where they are known; 0: not known.
+  double ahead_m = 0, left_m = 0;
+  double placement_sd_m = 0.025;  ///< Of a hand that holds a pose in the air, per axis.
+};
+
+/// x points from the first place to the second, and the third is on y's side. Refuses places nearer
+/// than 0.2 m, an angle between them outside of 60 to 120 degrees, known distances that are off by
+/// more than 2 % and three standard deviations of placement and of what was seen, and a mirrored
+/// image.
+Result<CameraPose> FromThreePoses(const ThreePoses& poses);
+
+/// A point on a board's surface that a sphere is held on.
+struct BoardMark {
+  std::string name;                ///< As a person finds it: "front left, left board".
+  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Of the centre of a sphere that lies on it.
+};
+
+/// Four marks on each board, over its load cells, whose places the layout and the board's geometry
+/// give; the plates' surface is z = 0 of W, as for the feet on it. Front and left are the person's,
+/// also of a board that lies turned. The left board first; of "single" it is the only one.
+std::vector<BoardMark> BoardMarks(const stream::BoardLayout& layout, double radius_m);
 
 }  // namespace footing::camera_pose

@@ -1,19 +1,97 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <vector>
 
-#include "common/camera/cone.h"
+#include <Eigen/Core>
+
+#include "common/camera/blobs.h"
 #include "common/camera/edges.h"
 #include "common/camera/image.h"
-#include "common/camera/lit_quads.h"
-#include "common/camera/local_slopes.h"
-#include "common/camera/profile_table.h"
-#include "common/camera/settings.h"
+#include "common/camera/lens.h"
 
 namespace footing::sphere {
+
+/// The cone of rays that touch a sphere, in slopes of a frame whose third axis is near the cone's:
+/// a ray's coordinates are (s, t, 1).
+struct Cone {
+  Eigen::Vector2d axis{0, 0};  ///< Slopes of its axis.
+  double tangent = 0;          ///< Of its half angle.
+};
+
+struct ConeFit {
+  Cone cone;
+  std::vector<bool> inliers;  ///< Of the points.
+};
+
+/// Least squares on unit rays u of the silhouette: u . w = 1 with w along the axis and |w| =
+/// 1/cos of the half angle; linear, no ellipse. Nothing with fewer than three points or when they
+/// lie on no cone.
+std::optional<Cone> FitCone(const std::vector<Eigen::Vector2d>& slopes,
+                            const std::vector<bool>& use);
+
+/// The same by consensus: the cone through three points that has the most others within
+/// `tolerance` of its edge, in slopes, fitted again to those. Its half angle's tangent is within
+/// `narrowest` and `widest`.
+std::optional<ConeFit> FitConeRobustly(const std::vector<Eigen::Vector2d>& slopes, double tolerance,
+                                       double narrowest, double widest);
+
+/// How far a ray is outside of the cone, in slopes.
+double Beyond(const Cone& cone, const Eigen::Vector2d& slopes);
+
+/// Slopes around a direction, as a function of the pixel: exact at nine pixels of a window, and
+/// quadratic between them (below 0.002 px for a lens that bends 10 % at its corners).
+class LocalSlopes {
+ public:
+  /// `middle` is the window's middle and the direction of the third axis, `half_px` its half size.
+  LocalSlopes(const Lens& lens, const Eigen::Vector2d& middle, double half_px);
+
+  Eigen::Vector2d At(double u, double v) const;
+  /// d slopes / d pixel in the middle.
+  const Eigen::Matrix2d& scale() const { return scale_; }
+  /// How that changes, per pixel along u (0) or v (1).
+  Eigen::Matrix2d ScaleChange(int axis) const;
+  /// Columns: the axes of s and t and the third one, in C.
+  const Eigen::Matrix3d& R_CL() const { return R_CL_; }
+
+ private:
+  Eigen::Vector2d middle_;
+  double half_px_;
+  Eigen::Matrix<double, 2, 9> terms_;  ///< Of 1, x, x², y, xy, x²y, y², xy², x²y².
+  Eigen::Matrix2d scale_;
+  Eigen::Matrix3d R_CL_;
+};
+
+/// Brightness of a blurred disc at a distance from its middle, and how it changes.
+struct ProfileValue {
+  float disc = 0;  ///< Of an even disc: 1 inside, 0 outside.
+  float limb = 0;  ///< Of a disc whose brightness is 1 - cos, 0 in the middle, 1 at the edge.
+  float disc_d = 0, limb_d = 0;        ///< Slopes along `beyond`.
+  float disc_blur = 0, limb_blur = 0;  ///< Slopes along `blur`.
+};
+
+/// Both discs convolved with a Gaussian, tabulated once by numerical integration over radius, with
+/// the angle done by a Bessel function. Distances are in units of the blur's deviation.
+class ProfileTable {
+ public:
+  ProfileTable();
+
+  /// `beyond`: distance outside of the edge, in blurs; `blur`: deviation over the disc's radius,
+  /// held to 0.005 to 0.6.
+  ProfileValue At(float beyond, float blur) const;
+
+  static constexpr float kReach = 5;  ///< Beyond that, the disc is 1 or 0.
+
+ private:
+  static constexpr int kBlurs = 61, kDistances = 101;
+  static constexpr float kLeastBlur = 0.005F, kBlurStep = 0.01F, kDistanceStep = 0.1F;
+
+  struct Cell {
+    float disc, limb;
+  };
+  std::vector<Cell> cells_;
+};
 
 inline constexpr int kSectors = kEdgeRays;
 using SectorReach = std::array<double, kSectors>;
@@ -61,5 +139,49 @@ struct DiscFit {
 std::optional<DiscFit> FitDisc(const Image& image, const LocalSlopes& slopes,
                                const DiscStart& start, const Settings& settings,
                                const ProfileTable& table);
+
+/// Which sectors have the cone's edge, and up to where the others show the sphere.
+SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slopes);
+
+/// A sphere whose light no photometric fit explains, as one before the edge of a lamp: its cone as
+/// the edges give it, with a covariance that follows from them. Its direction is good to a
+/// fraction of a pixel, its distance is rough. `inliers` are those of `start.edges`; `radius_sd_px`
+/// is what they have in common beside the usual. Nothing when they are too few.
+std::optional<DiscFit> FitEdge(const LocalSlopes& slopes, const DiscStart& start,
+                               const std::vector<bool>& inliers, double radius_sd_px);
+
+// Limb, gradient and the blur of the smallest spheres change the colour by 0.15.
+inline constexpr double kSureColourOff = 0.2, kMostColourOff = 0.45;
+
+/// A blob whose edge is a cone's.
+struct Candidate {
+  LocalSlopes slopes;
+  DiscStart start;
+  std::vector<bool> inliers;  ///< Of its edges.
+  bool is_compact = false;    ///< Its blob does not extend far beyond the cone.
+  double colour_off = 0;      ///< From the sphere's own.
+  double quality = 0;         ///< Share of the edge, less for another colour.
+  double radius_sd_px = 0;    ///< What its edges have in common, before a lamp.
+};
+
+/// Where candidates are looked for.
+struct Scene {
+  const Image& image;
+  const Quads& quads;
+  const Lens& lens;
+  const Settings& settings;
+};
+
+/// How much a blob is like a sphere of this colour, at a glance: by its shape and its chroma.
+double Likeness(const Blob& blob, const Eigen::Vector3d& colour_dn);
+
+/// How far a colour is from the sphere's: by hue and saturation, and by how much darker it is, over
+/// its length. Brighter is allowed: it may be at the sensor's limit.
+double ColourOff(const Eigen::Vector3d& seen_dn, const Eigen::Vector3d& colour_dn);
+
+/// Nothing where the colour is another one, or the edge none of a cone. Beside a lamp only edges
+/// that are not the lamp's and pixels that it does not light count for the fit of the light.
+std::optional<Candidate> CandidateOf(const Scene& scene, const Target& target, const Blob& blob,
+                                     Surroundings around);
 
 }  // namespace footing::sphere

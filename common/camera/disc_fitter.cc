@@ -1,15 +1,143 @@
 #include "common/camera/disc_fitter.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <vector>
 
-#include "common/camera/disc_ring.h"
-#include "common/camera/unseen_motion.h"
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace footing::sphere::disc {
+
+std::vector<Sample> Thinned(const std::vector<Sample>& all, std::size_t most) {
+  const std::size_t every = 1 + all.size() / most;
+  std::vector<Sample> some;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i / 4 % every == 0) some.push_back(all[i]);
+  return some;
+}
+
+void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks) {
+  blocks.clear();
+  std::array<std::size_t, 3> open{};  // Number of the channel's block, and one.
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Sample& sample = samples[i];
+    const auto channel = static_cast<std::size_t>(sample.channel);
+    if (open[channel] == 0 || blocks[open[channel] - 1].count == kBlock) {
+      Block& block = blocks.emplace_back();
+      block.channel = channel;
+      for (Lane* lane :
+           {&block.s, &block.t, &block.later, &block.value, &block.behind, &block.is_used})
+        lane->setZero();
+      open[channel] = blocks.size();
+    }
+    Block& block = blocks[open[channel] - 1];
+    const int k = block.count++;
+    block.samples[static_cast<std::size_t>(k)] = i;
+    block.s[k] = static_cast<float>(sample.slopes.x());
+    block.t[k] = static_cast<float>(sample.slopes.y());
+    block.later[k] = static_cast<float>(sample.later);
+    block.value[k] = static_cast<float>(sample.value);
+    block.behind[k] = static_cast<float>(sample.behind);
+    block.is_used[k] = 1;
+  }
+}
+
+void ToSamples(const std::vector<Block>& blocks, std::vector<Sample>& samples) {
+  for (const Block& block : blocks) {
+    for (int k = 0; k < block.count; ++k) {
+      Sample& sample = samples[block.samples[static_cast<std::size_t>(k)]];
+      sample.beyond = static_cast<double>(block.beyond[k]);
+      sample.residual = static_cast<double>(block.residual[k]);
+      sample.height = static_cast<double>(block.height[k]);
+    }
+  }
+}
+
+Lane AfterAxis(const Block& block, const State& state, const PixelScale& scale) {
+  return block.later - static_cast<float>(scale.down().dot(state.shape.head<2>()));
+}
+
+template <int kSize>
+void ToRows(Block& block, const State& state, const PixelNoise& noise, const PixelScale& scale,
+            const ProfileTable& table, Rows<kSize>& rows) {
+  constexpr bool kMoves = kSize == kOwnMoving;
+  std::conditional_t<kMoves, ModelledMoving, Modelled> model;
+  if constexpr (kMoves) {
+    ModelMoving(block.s, block.t, AfterAxis(block, state, scale), state, scale, table, model);
+  } else {
+    Model(block.s, block.t, state, scale, table, model);
+  }
+  const auto inside = static_cast<float>(state.inside[block.channel]);
+  const Lane outside = static_cast<float>(state.outside[block.channel]) + block.behind;
+  for (std::size_t i = 0; i < kShape; ++i) rows.row[i] = inside * model.light_slope[i];
+  for (std::size_t i = 0; i < 4; ++i) rows.row[i] -= outside * model.cover_slope[i];
+  if constexpr (kMoves) {
+    for (std::size_t i = 0; i < kMotion; ++i)
+      rows.row[kShape + i] = inside * model.light_motion[i] - outside * model.cover_motion[i];
+  }
+  rows.row[kSize - 2] = model.light;
+  rows.row[kSize - 1] = 1 - model.cover;
+  rows.modelled = outside * rows.row[kSize - 1] + inside * model.light;
+  rows.off = block.value - rows.modelled;
+  const auto dark = static_cast<float>(noise.DarkVariance());
+  const Lane per_variance =
+      1 / (dark + static_cast<float>(noise.dn_per_electron) * rows.modelled.max(0.0F));
+  const Lane per_sd = per_variance.sqrt();
+  block.beyond = model.beyond;
+  block.residual = rows.off * per_sd;
+  block.height = (inside - outside).abs() * per_sd;
+  constexpr auto kHuberSds = static_cast<float>(kHuber);
+  const Lane z = block.residual.abs(), bounded = z.min(kHuberSds);
+  rows.cost = block.is_used * bounded * (2 * z - bounded);
+  rows.weight = block.is_used * per_variance * kHuberSds / z.max(kHuberSds);
+}
+
+template <int kSize>
+void Equations<kSize>::Add(const Rows<kSize>& rows, std::size_t channel) {
+  Part& part = per_channel_[channel];
+  Row& right = right_[channel];
+  for (int i = 0; i < kSize; ++i) {
+    const Lane weighted = rows.weight * rows.row[static_cast<std::size_t>(i)];
+    right[i] += static_cast<double>((weighted * rows.off).sum());
+    for (int j = i; j < kSize; ++j)
+      part(i, j) += static_cast<double>((weighted * rows.row[static_cast<std::size_t>(j)]).sum());
+  }
+}
+
+template <int kSize>
+void Equations<kSize>::Assemble(Normal& normal, Right& right) const {
+  constexpr int kHead = kSize - 2;
+  normal.setZero();
+  right.setZero();
+  for (int c = 0; c < 3; ++c) {
+    const Part part =
+        per_channel_[static_cast<std::size_t>(c)].template selfadjointView<Eigen::Upper>();
+    const auto& part_right = right_[static_cast<std::size_t>(c)];
+    const int own = kLevels + 2 * c;
+    normal.template topLeftCorner<kHead, kHead>() += part.template topLeftCorner<kHead, kHead>();
+    normal.template block<kHead, 2>(0, own) = part.template topRightCorner<kHead, 2>();
+    normal.template block<2, kHead>(own, 0) = part.template bottomLeftCorner<2, kHead>();
+    normal.template block<2, 2>(own, own) = part.template bottomRightCorner<2, 2>();
+    right.template head<kHead>() += part_right.template head<kHead>();
+    right.template segment<2>(own) = part_right.template tail<2>();
+  }
+  for (int i = 0; i < kParameters; ++i)
+    if (normal(i, i) <= 0) normal(i, i) = 1;
+}
+
+template struct Rows<kOwn>;
+template struct Rows<kOwnMoving>;
+template class Equations<kOwn>;
+template class Equations<kOwnMoving>;
+template void ToRows(Block&, const State&, const PixelNoise&, const PixelScale&,
+                     const ProfileTable&, Rows<kOwn>&);
+template void ToRows(Block&, const State&, const PixelNoise&, const PixelScale&,
+                     const ProfileTable&, Rows<kOwnMoving>&);
+
 namespace {
 
 constexpr double kGradientSd = 0.15;
@@ -262,6 +390,275 @@ Solution Mean(const std::vector<Solution>& modes) {
   mean.covariance = second / sum - first * first.transpose();
   mean.state.shape.head<3>() += first;
   return mean;
+}
+
+}  // namespace footing::sphere::disc
+
+// Which pixels take part in the fit.
+namespace footing::sphere {
+namespace disc {
+namespace {
+
+constexpr int kClippedDn = 250;
+constexpr double kHiddenBlurs = 3.5;  // How far its light reaches beyond an occluder's edge.
+constexpr double kBesideBlurs = 2.5;  // Along the sphere's edge, where half of it is seen.
+
+}  // namespace
+
+void Fitter::Collect(const Image& image, const LocalSlopes& slopes,
+                     const Eigen::Vector2d& middle_px, const State& state, double far_blurs,
+                     int most_pixels) {
+  samples_.clear();
+  inside_ = clipped_ = 0;
+  const double per_px = std::sqrt(slopes.scale().determinant());
+  const double radius_px = state.shape[2] / per_px;
+  const double reach_px = 1.25 * radius_px + (far_blurs + 1) * settings_.profile.blur_px;
+  const int u0 = 2 * static_cast<int>(std::max(0.0, middle_px.x() - reach_px) / 2);
+  const int v0 = 2 * static_cast<int>(std::max(0.0, middle_px.y() - reach_px) / 2);
+  const int u1 = std::min(image.width - 1, static_cast<int>(middle_px.x() + reach_px));
+  const int v1 = std::min(image.height - 1, static_cast<int>(middle_px.y() + reach_px));
+  const double ring_px = 2 * (far_blurs + 2.5) * settings_.profile.blur_px;
+  const double expected = 2 * std::numbers::pi * radius_px * std::min(radius_px, ring_px);
+  const int every = 1 + static_cast<int>(expected / most_pixels);
+  int quad = 0;
+  for (int v = v0; v < v1; v += 2) {
+    for (int u = u0; u < u1; u += 2)
+      CollectQuad(image, slopes, middle_px, state, u, v, far_blurs, quad, every);
+  }
+}
+
+void Fitter::CollectQuad(const Image& image, const LocalSlopes& slopes,
+                         const Eigen::Vector2d& middle_px, const State& state, int u, int v,
+                         double far_blurs, int& quad, int every) {
+  if (lit_.At(u / 2, v / 2)) return;
+  const Eigen::Vector2d at = slopes.At(u + 0.5, v + 0.5);
+  const double beyond = BeyondOf(at, state);
+  if (beyond > far_blurs + 1.5) return;
+  // The middle says little of where the edge is.
+  const bool is_middle = beyond < -5;
+  ++quad;
+  if (quad % (is_middle ? 4 * every : every) != 0) return;
+  for (int i = 0; i < 4; ++i) {
+    const int at_u = u + i % 2, at_v = v + i / 2;
+    Sample sample;
+    sample.value = image.Value(at_u, at_v);
+    if (beyond < -1) {
+      ++inside_;
+      clipped_ += sample.value >= kClippedDn ? 1 : 0;
+    }
+    if (sample.value >= kClippedDn) continue;
+    sample.slopes = slopes.At(at_u, at_v);
+    sample.channel = image.Channel(at_u, at_v);
+    sample.later = (at_v - middle_px.y()) * settings_.shutter.row_s / settings_.shutter.exposure_s;
+    const Eigen::Vector2d pixel_from = sample.slopes - state.shape.head<2>();
+    sample.sector = SectorOf(pixel_from);
+    samples_.push_back(sample);
+  }
+}
+
+/// How far outside of a state's edge, in blurs.
+double Fitter::BeyondOf(const Eigen::Vector2d& slopes, const State& state) const {
+  const Eigen::Vector2d from = slopes - state.shape.head<2>();
+  const double r = std::max(1e-9, from.norm());
+  return (r - state.shape[2]) / (settings_.profile.blur_px * scale_.Along(from / r));
+}
+
+std::vector<bool> Fitter::Limit(const State& state, const SectorReach& reach) {
+  const double blur = Blur();
+  std::vector<bool> seen(kSectors);
+  for (std::size_t s = 0; s < kSectors; ++s) seen[s] = std::isinf(reach[s]);
+  const double arc = 2 * std::numbers::pi / kSectors * state.shape[2];
+  const std::vector<bool> sectors = WithoutBorders(seen, kBesideBlurs * blur / arc);
+  std::erase_if(samples_, [&](const Sample& sample) {
+    const auto s = static_cast<std::size_t>(sample.sector);
+    const double r = (sample.slopes - state.shape.head<2>()).norm();
+    const double edge = sectors[s] ? reach[s] : std::min(reach[s], state.shape[2]);
+    return r > edge - kHiddenBlurs * blur;
+  });
+  return sectors;
+}
+
+void Fitter::LookBehind(const State& state, double moving_px, std::vector<bool>& sectors) {
+  for (Sample& sample : samples_) sample.beyond = BeyondOf(sample.slopes, state);
+  disc::LookBehind(samples_, state, settings_.noise, 0.5 * moving_px / settings_.profile.blur_px,
+                   sectors);
+}
+
+void Fitter::KeepBefore(const Eigen::Vector2d& at, const Eigen::Vector2d& away, double margin) {
+  std::erase_if(samples_,
+                [&](const Sample& sample) { return (sample.slopes - at).dot(away) > -margin; });
+}
+
+int Fitter::DropSectors(std::vector<bool>& sectors) {
+  std::array<double, kSectors> sum{}, square{}, count{}, amplitude{};
+  for (const Sample& sample : samples_) {
+    if (sample.beyond < -2.5) continue;
+    const auto s = static_cast<std::size_t>(sample.sector);
+    sum[s] += sample.residual;
+    square[s] += std::min(sample.residual * sample.residual, 100.0);
+    amplitude[s] += sample.height;
+    ++count[s];
+  }
+  int dropped = 0;
+  for (std::size_t s = 0; s < kSectors; ++s) {
+    if (!sectors[s] || count[s] < 3) continue;
+    // Noise alone, and 1.5 % of the contrast that no model of a lamp explains.
+    const double slack = 0.015 * amplitude[s] / count[s];
+    const double mean = std::abs(sum[s] / count[s]), rms = std::sqrt(square[s] / count[s]);
+    const bool fits = mean < 3.5 / std::sqrt(count[s]) + slack &&
+                      rms < 1 + 3.0 / std::sqrt(2 * count[s]) + 2 * slack;
+    if (fits) continue;
+    sectors[s] = false;
+    ++dropped;
+  }
+  std::erase_if(samples_, [&](const Sample& sample) {
+    return !sectors[static_cast<std::size_t>(sample.sector)] && sample.beyond > -2.5;
+  });
+  return dropped;
+}
+
+}  // namespace disc
+
+int SectorOf(const Eigen::Vector2d& from) {
+  // Borders of the sectors of an eighth, as tangents.
+  static const std::array<double, kSectors / 8> kBorders = [] {
+    std::array<double, kSectors / 8> borders{};
+    for (std::size_t i = 0; i < borders.size(); ++i)
+      borders[i] = std::tan(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / kSectors);
+    return borders;
+  }();
+  const double u = std::abs(from.x()), v = std::abs(from.y());
+  const double low = std::min(u, v), high = std::max(u, v);
+  int sector = 0;
+  for (const double border : kBorders) sector += low > border * high ? 1 : 0;
+  if (v > u) sector = kSectors / 4 - sector;
+  if (from.x() < 0) sector = kSectors / 2 - sector;
+  if (from.y() < 0) sector = kSectors - sector;
+  return sector % kSectors;
+}
+
+}  // namespace footing::sphere
+
+namespace footing::sphere::disc {
+namespace {
+
+// Hands below 0.05 m/s, which is the noise of travel at 1 m: 258 of 21 140 moments of 18 recorded
+// motions (CMU 13, HDM05 bd and bk), 0.3 to 1.2 % by their kind.
+constexpr double kRestShare = 0.01;
+constexpr int kRings = 12, kAngles = 24;
+
+/// Beyond that nothing is possible: by how fast hands are, by the travel and by the blur seen.
+double FarthestPx(const MotionEvidence& evidence, double motion_sd_px) {
+  constexpr double kSds = 5;
+  const Eigen::Matrix4d noise = evidence.information.inverse();
+  const double travel =
+      evidence.change.tail<2>().norm() + kSds * std::sqrt(noise.bottomRightCorner<2, 2>().trace());
+  const double blur =
+      evidence.change.head<2>().norm() + kSds * std::sqrt(noise.topLeftCorner<2, 2>().trace());
+  return std::min({kSds * motion_sd_px, travel, std::sqrt(48 * evidence.blur_px * blur)});
+}
+
+}  // namespace
+
+Eigen::Matrix3d UnseenMotion(const MotionEvidence& evidence, double motion_sd_px) {
+  constexpr double kPi = std::numbers::pi;
+  const double farthest = FarthestPx(evidence, motion_sd_px);
+  const double variance = motion_sd_px * motion_sd_px;
+  const Eigen::Vector4d weighted = evidence.information * evidence.change;
+  double sum = kRestShare;  // Likelihoods are those over that of rest.
+  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < kAngles; ++k) {
+    const double angle = 2 * kPi * (k + 0.5) / kAngles, c = std::cos(angle), s = std::sin(angle);
+    const Eigen::Vector4d blurred(c * c - s * s, 2 * c * s, 0, 0), moved(0, 0, c, s);
+    const Eigen::Vector4d by_blur = evidence.information * blurred;
+    const double seen_blur = blurred.dot(weighted), seen_travel = moved.dot(weighted);
+    const double blur2 = blurred.dot(by_blur), both = moved.dot(by_blur),
+                 travel2 = moved.dot(evidence.information * moved) + 1 / variance;
+    const Eigen::Vector3d per_px = evidence.per_travel * Eigen::Vector2d(c, s);
+    for (int i = 0; i < kRings; ++i) {
+      const double root = (i + 0.5) / kRings, r = farthest * root * root;
+      // Motion adds (motion . unit)² / 12 to the square of the blur: half of it is even.
+      const double blur = r * r / (48 * evidence.blur_px);
+      const double log_weight = blur * seen_blur + r * seen_travel -
+                                0.5 * (blur * blur * blur2 + r * r * travel2) - blur * r * both;
+      const double area = r * 2 * farthest * root / kRings / kAngles / variance;
+      const double weight = (1 - kRestShare) * area * std::exp(std::min(700.0, log_weight));
+      const Eigen::Vector3d shift = r * per_px - blur * evidence.per_blur;
+      sum += weight;
+      square += weight * shift * shift.transpose();
+    }
+  }
+  return square / sum;
+}
+
+namespace {
+
+constexpr double kRingBlurs = 2.5;  // Farther out there is no light of the sphere.
+constexpr double kWidestRange = 8;  // Of one level's noise; ten pixels reach three or four.
+constexpr double kLeastApart = 5;   // Deviations; below that, one level for all has less noise.
+
+}  // namespace
+
+double Variance(const PixelNoise& noise, double value) {
+  return noise.DarkVariance() + noise.dn_per_electron * std::max(0.0, value);
+}
+
+void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoise& noise,
+                double more_blurs, std::vector<bool>& sectors) {
+  const std::size_t count = sectors.size();
+  // Values of each sector and channel, one after the other.
+  const auto place = [](const Sample& sample) {
+    return 3 * static_cast<std::size_t>(sample.sector) + static_cast<std::size_t>(sample.channel);
+  };
+  const auto is_behind = [&](const Sample& s) { return s.beyond >= kRingBlurs + more_blurs; };
+  std::vector<std::size_t> ends(3 * count + 1, 0);
+  for (const Sample& sample : samples) ends[place(sample) + 1] += is_behind(sample) ? 1 : 0;
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<double> ring(ends.back()), values;
+  std::vector<std::size_t> next = ends;
+  for (const Sample& sample : samples)
+    if (is_behind(sample)) ring[next[place(sample)]++] = sample.value;
+  std::vector<std::array<double, 3>> behind(count);
+  for (std::size_t s = 0; s < count; ++s) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      values.clear();
+      for (const std::size_t turn : {count - 1, count, count + 1}) {
+        const std::size_t at = 3 * ((s + turn) % count) + c;
+        values.insert(values.end(), ring.begin() + static_cast<std::ptrdiff_t>(ends[at]),
+                      ring.begin() + static_cast<std::ptrdiff_t>(ends[at + 1]));
+      }
+      if (values.empty()) continue;
+      const auto [least, most] = std::minmax_element(values.begin(), values.end());
+      const double range = *most - *least;
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      const double sd = std::sqrt(Variance(noise, *middle));
+      if (range > kWidestRange * sd) sectors[s] = false;
+      const double apart = *middle - state.outside[c];
+      if (std::abs(apart) > kLeastApart * sd) behind[s][c] = apart;
+    }
+  }
+  for (Sample& sample : samples) {
+    const auto s = static_cast<std::size_t>(sample.sector);
+    sample.behind = behind[s][static_cast<std::size_t>(sample.channel)];
+  }
+  std::erase_if(samples, [&](const Sample& sample) {
+    return !sectors[static_cast<std::size_t>(sample.sector)] && sample.beyond > -2.5;
+  });
+}
+
+std::vector<bool> WithoutBorders(const std::vector<bool>& seen, double beside) {
+  const auto count = static_cast<int>(seen.size());
+  const auto is_seen = [&](int s) { return seen[static_cast<std::size_t>((s + count) % count)]; };
+  std::vector<bool> sectors = seen;
+  for (int s = 0; s < count; ++s) {
+    if (is_seen(s - 1) || is_seen(s) || is_seen(s + 1)) continue;
+    for (int i = 1; i <= std::min(count / 2, 1 + static_cast<int>(std::ceil(beside))); ++i) {
+      sectors[static_cast<std::size_t>((s + i) % count)] = false;
+      sectors[static_cast<std::size_t>((s + count - i) % count)] = false;
+    }
+  }
+  return sectors;
 }
 
 }  // namespace footing::sphere::disc

@@ -1,13 +1,90 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
-#include "common/camera/disc_fit.h"
-#include "common/camera/disc_rows.h"
+#include <Eigen/Core>
 
+#include "common/camera/disc_fit.h"
+#include "common/camera/disc_model.h"
+#include "common/camera/edges.h"
+
+/// Pixels side by side, their residuals and their normal equations.
 namespace footing::sphere::disc {
+
+inline constexpr int kLevels = kShape + kMotion;  // Where those of the first channel are.
+inline constexpr int kParameters = kLevels + 6;
+inline constexpr int kOwn = kShape + 2;  // What one pixel of a sphere at rest depends on.
+inline constexpr int kOwnMoving = kOwn + kMotion;
+inline constexpr double kHuber = 2.5;
+
+using Normal = Eigen::Matrix<double, kParameters, kParameters>;
+using Right = Eigen::Matrix<double, kParameters, 1>;
+
+/// One pixel that takes part.
+struct Sample {
+  Eigen::Vector2d slopes;
+  double value;
+  int channel;
+  int sector;
+  double later = 0;   // When its row is exposed, after the row of the blob's middle, in exposures.
+  double behind = 0;  // What is behind the sphere there, less the state's `outside`, DN.
+  // At the state that was evaluated last.
+  double beyond = 0;    // Blurs outside of the edge.
+  double residual = 0;  // Over its deviation.
+  double height = 0;    // Contrast of its channel, alike.
+};
+
+/// About `most` of them, spread evenly; the four pixels of a quad stay together.
+std::vector<Sample> Thinned(const std::vector<Sample>& all, std::size_t most);
+
+/// Pixels of one channel; `is_used` is 0 for what is left over, 1 for others.
+struct Block {
+  std::size_t channel = 0;
+  int count = 0;
+  std::array<std::size_t, kBlock> samples{};
+  Lane s, t, later, value, behind, is_used;
+  Lane beyond, residual, height;  // As a sample's.
+};
+
+/// When a block's pixels are exposed after the row of a state's axis, in exposures.
+Lane AfterAxis(const Block& block, const State& state, const PixelScale& scale);
+
+void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks);
+/// What was evaluated, back to the samples.
+void ToSamples(const std::vector<Block>& blocks, std::vector<Sample>& samples);
+
+/// How pixels depend on their own parameters (`kSize` is kOwn or kOwnMoving): the model's, then
+/// the levels inside and outside of their channel.
+template <int kSize>
+struct Rows {
+  std::array<Lane, static_cast<std::size_t>(kSize)> row;
+  Lane off;       // Value less the model's, DN.
+  Lane weight;    // Huber's, over the variance; zero for what is left over.
+  Lane cost;      // Huber's.
+  Lane modelled;  // The model's value, DN.
+};
+
+/// Evaluates a block at a state.
+template <int kSize>
+void ToRows(Block& block, const State& state, const PixelNoise& noise, const PixelScale& scale,
+            const ProfileTable& table, Rows<kSize>& rows);
+
+/// Normal equations; a pixel knows only its own channel's levels.
+template <int kSize>
+class Equations {
+ public:
+  void Add(const Rows<kSize>& rows, std::size_t channel);
+  /// Of all parameters; those that take no part get a 1 on the diagonal.
+  void Assemble(Normal& normal, Right& right) const;
+
+ private:
+  using Part = Eigen::Matrix<double, kSize, kSize>;  // Its upper triangle.
+  using Row = Eigen::Matrix<double, kSize, 1>;
+  std::array<Part, 3> per_channel_{Part::Zero(), Part::Zero(), Part::Zero()};
+  std::array<Row, 3> right_{Row::Zero(), Row::Zero(), Row::Zero()};
+};
 
 inline constexpr double kPoorSds = 4;            // A misfit that noise does not explain.
 inline constexpr double kGoodSds = 2.5;          // One that it does.
@@ -99,5 +176,35 @@ class Fitter {
   int inside_ = 0, clipped_ = 0;
   Normal normal_;  // Of the state that was solved last.
 };
+
+/// What the residuals of a sphere at rest say of motion, and what motion does to its fit.
+struct MotionEvidence {
+  /// Blur with twice the angle, px: its cosine and sine; travel that the rolling shutter shows, px.
+  Eigen::Vector4d change;
+  Eigen::Matrix4d information;             ///< Inverse of the noise of these.
+  double blur_px = 0;                      ///< Of the sphere at rest.
+  Eigen::Vector3d per_blur;                ///< Axis and tangent by an even blur,
+  Eigen::Matrix<double, 3, 2> per_travel;  ///< and by travel.
+};
+
+/// Mean square error of axis and tangent that a motion leaves which is not modelled: over all
+/// motions that the evidence allows. Travel is normal along each axis, with `motion_sd_px`; some
+/// hands are at rest.
+Eigen::Matrix3d UnseenMotion(const MotionEvidence& evidence, double motion_sd_px);
+
+/// Variance of a pixel's value, DN².
+double Variance(const PixelNoise& noise, double value);
+
+/// Sets `behind` of each sample. Where what is behind the sphere is not the same all around, as a
+/// coloured thing beyond part of its edge, a sector gets a level of its own, of the ring around it;
+/// sectors on a border of two levels are taken out, with their samples at the edge. `beyond` of the
+/// samples is used. `more_blurs`: how much farther out the ring begins, beyond a sphere's travel.
+void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoise& noise,
+                double more_blurs, std::vector<bool>& sectors);
+
+/// Sectors whose edge is seen, less those beside a hidden part of it: what hides it darkens the
+/// edge there too, as far as the blur reaches, which is `beside` sectors. One or two unseen sectors
+/// are noise, and hidden by nothing.
+std::vector<bool> WithoutBorders(const std::vector<bool>& seen, double beside);
 
 }  // namespace footing::sphere::disc

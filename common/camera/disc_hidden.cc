@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/camera/cone.h"
+#include "common/camera/disc_fit.h"
 
 namespace footing::sphere::disc {
 namespace {

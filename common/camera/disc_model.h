@@ -5,8 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/camera/local_slopes.h"
-#include "common/camera/profile_table.h"
+#include "common/camera/disc_fit.h"
 
 /// The picture of a sphere as the photometric fit models it, many pixels at a time.
 namespace footing::sphere::disc {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/camera/edge_fit.h"
+#include "common/camera/disc_fit.h"
 #include "common/camera/edges.h"
 
 namespace footing::sphere {

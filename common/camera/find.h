@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "common/camera/blobs.h"
-#include "common/camera/candidate.h"
+#include "common/camera/disc_fit.h"
+#include "common/camera/edges.h"
 #include "common/camera/image.h"
 #include "common/camera/lens.h"
-#include "common/camera/profile_table.h"
-#include "common/camera/settings.h"
 
 namespace footing::sphere {
 

@@ -90,7 +90,7 @@ function(add_module name)
                  FILE_SET without_source TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${without_source})
   target_link_libraries(${name} ${scope} ${public_links})
   # The fuzzer follows what decodes; the rest runs as fast as in any build with sanitizers.
-  if(folder MATCHES "^(common|daemon/sensor|clients/relay/nats|clients/skeleton)(/|$)")
+  if(folder MATCHES "^(common|daemon/sensor|clients/relay|clients/skeleton)(/|$)")
     if(FOOTING_FUZZ AND arg_SOURCES)
       target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
     endif()

@@ -1,15 +1,18 @@
 #include "common/frames/camera_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+
 #include <nlohmann/json.hpp>
 
-#include "common/runtime/data_file.h"
 #include "common/base/json_text.h"
-#include "common/base/number.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/runtime/files.h"
 
 namespace footing::frames {
 namespace {
@@ -267,6 +270,253 @@ Result<CameraFile> ReadUncalibratedCamera(const std::string& path) {
   const auto text = config::ReadTextFile(path);
   if (!text) return text.error();
   return Parse(*text, path, false);
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+void SetPose(ordered_json& object, const Eigen::Isometry3d& X_WC, const std::string& calibrated) {
+  const Eigen::Vector3d p = X_WC.translation();
+  const Eigen::Quaterniond q(X_WC.rotation());
+  object["position_W_m"] = {p.x(), p.y(), p.z()};
+  object["rotation_WC"] = {q.w(), q.x(), q.y(), q.z()};
+  if (!calibrated.empty()) object["calibrated"] = calibrated;
+}
+
+void SetLens(ordered_json& object, const sphere::Lens& lens) {
+  object["width"] = lens.width;
+  object["height"] = lens.height;
+  object["fx_px"] = lens.fx_px;
+  object["fy_px"] = lens.fy_px;
+  object["cx_px"] = lens.cx_px;
+  object["cy_px"] = lens.cy_px;
+  object["distortion"] = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+}
+
+void SetSpheres(ordered_json& object, const CameraFile& camera) {
+  ordered_json spheres = ordered_json::array();
+  for (const HeldSphere& held : camera.spheres) {
+    ordered_json colour = ordered_json::array();
+    for (const double value : held.target.colour_dn)
+      colour.push_back(std::round(100 * value) / 100);
+    ordered_json one = {{"role", stream::Name(held.role)}, {"colour_dn", colour}};
+    if (held.led_rgb) one["led"] = ColourText(*held.led_rgb);
+    one["radius_m"] = held.target.radius_m;
+    spheres.push_back(one);
+  }
+  object["spheres"] = spheres;
+}
+
+/// Changes keys of a camera file; the others stay.
+template <typename Change>
+Result<void> Rewrite(const std::string& path, const Change& change) {
+  const auto text = config::ReadTextFile(path);
+  if (!text) return text.error();
+  if (const auto camera = ReadUncalibratedCamera(path); !camera) return camera.error();
+  ordered_json object = ordered_json::parse(*text, nullptr, false, true);
+  change(object);
+  const auto written = config::ReplaceFile(path, object.dump(2) + "\n");
+  return written ? Result<void>()
+                 : Failure("cannot write " + path + ": " + written.error().message);
+}
+
+/// Changes keys of a camera file, or begins one where there is none.
+template <typename Change>
+Result<void> RewriteOrBegin(const std::string& path, const CameraFile& camera,
+                            const Change& change) {
+  std::error_code none;
+  if (std::filesystem::exists(path, none)) return Rewrite(path, change);
+  const auto written = config::ReplaceFile(path, ToJson(camera));
+  return written ? Result<void>()
+                 : Failure("cannot write " + path + ": " + written.error().message);
+}
+
+}  // namespace
+
+std::string ToJson(const CameraFile& camera) {
+  const sphere::Settings& settings = camera.settings;
+  ordered_json object;
+  SetLens(object, camera.lens);
+  object.update({{"format", camera.format == sphere::PixelFormat::kYuyv ? "YUYV" : "SGRBG8"},
+                 {"rate_hz", camera.rate_hz},
+                 {"readout_s", camera.readout_s},
+                 {"exposure_s", settings.shutter.exposure_s},
+                 {"blur_px", settings.profile.blur_px},
+                 {"blur_sd_px", settings.profile.blur_sd_px},
+                 {"limb", settings.profile.limb},
+                 {"limb_sd", settings.profile.limb_sd},
+                 {"read_noise_dn", settings.noise.read_dn},
+                 {"dn_per_electron", settings.noise.dn_per_electron},
+                 {"noise_correlation", settings.noise.correlation}});
+  if (camera.X_WC) SetPose(object, *camera.X_WC, camera.calibrated);
+  if (!camera.spheres.empty()) SetSpheres(object, camera);
+  return object.dump(2) + "\n";
+}
+
+Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
+                       const std::string& calibrated) {
+  if (const auto camera = ReadCameraFile(path); !camera) return camera.error();
+  return Rewrite(path, [&](ordered_json& object) { SetPose(object, X_WC, calibrated); });
+}
+
+Result<void> StoreSpheres(const std::string& path, const CameraFile& camera) {
+  const sphere::Profile& profile = camera.settings.profile;
+  return RewriteOrBegin(path, camera, [&](ordered_json& object) {
+    object["exposure_s"] = camera.settings.shutter.exposure_s;
+    object["blur_px"] = profile.blur_px;
+    object["blur_sd_px"] = profile.blur_sd_px;
+    object["limb"] = profile.limb;
+    object["limb_sd"] = profile.limb_sd;
+    SetSpheres(object, camera);
+  });
+}
+
+Result<void> StoreLens(const std::string& path, const CameraFile& camera) {
+  return RewriteOrBegin(path, camera, [&](ordered_json& object) { SetLens(object, camera.lens); });
+}
+
+std::string ColourText(std::uint32_t rgb) {
+  char text[16];
+  std::snprintf(text, sizeof text, "#%06x", static_cast<unsigned>(rgb & 0xffffff));
+  return text;
+}
+
+namespace {
+
+constexpr std::size_t kMostHeaderBytes = 4096;
+constexpr std::string_view kTime = " time_ns ";
+
+struct Header {
+  bool is_colour = false;
+  std::array<int, 3> numbers{};  // Width, height, largest value.
+  std::optional<std::int64_t> time_ns;
+  std::size_t bytes = 0;
+};
+
+bool IsBlank(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
+
+/// A whole header at the start of the text; nothing when it is not all there.
+Result<std::optional<Header>> ReadHeader(std::string_view text) {
+  const Error no_image = InvalidData("frame: not a binary PGM or PPM image (P5 or P6, 8 bits)");
+  if (text.size() < 2) return std::optional<Header>();
+  if (text[0] != 'P' || (text[1] != '5' && text[1] != '6')) return no_image;
+  Header header;
+  header.is_colour = text[1] == '6';
+  std::size_t at = 2, count = 0;
+  while (count < 3) {
+    while (at < text.size() && IsBlank(text[at])) ++at;
+    if (at < text.size() && text[at] == '#') {
+      const std::size_t end = text.find('\n', at);
+      if (end == std::string_view::npos) break;
+      const std::string_view comment = text.substr(at + 1, end - at - 1);
+      std::int64_t time_ns = 0;
+      if (comment.starts_with(kTime) &&
+          std::from_chars(comment.data() + kTime.size(), comment.data() + comment.size(), time_ns)
+                  .ec == std::errc())
+        header.time_ns = time_ns;
+      at = end + 1;
+      continue;
+    }
+    const char* end = text.data() + text.size();
+    const auto [next, error] = std::from_chars(text.data() + at, end, header.numbers[count]);
+    if (next == end) break;
+    if (error != std::errc() || !IsBlank(*next)) return no_image;
+    at = static_cast<std::size_t>(next - text.data());
+    ++count;
+  }
+  if (count < 3) {
+    if (text.size() > kMostHeaderBytes) return no_image;
+    return std::optional<Header>();
+  }
+  header.bytes = at + 1;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const int size = header.numbers[i];
+    if (size < 32 || size > 4096 || size % 2 != 0)
+      return InvalidData("frame: sizes must be even, from 32 to 4096, not " + std::to_string(size));
+  }
+  if (header.numbers[2] != 255) return InvalidData("frame: the largest value must be 255");
+  return std::optional<Header>(header);
+}
+
+}  // namespace
+
+Result<std::optional<Frame>> NetpbmReader::Next() {
+  // Images of a FIFO may be parted by line ends.
+  const std::size_t first = pending_.find_first_not_of("\n\r");
+  pending_.erase(0, first == std::string::npos ? pending_.size() : first);
+  const auto header = ReadHeader(pending_);
+  if (!header) return header.error();
+  if (!*header) return std::optional<Frame>();
+  const Header& head = **header;
+  Frame frame;
+  frame.width = head.numbers[0];
+  frame.height = head.numbers[1];
+  frame.time_ns = head.time_ns;
+  const auto pixels =
+      static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+  const std::size_t size = pixels * (head.is_colour ? 3 : 1);
+  if (pending_.size() < head.bytes + size) return std::optional<Frame>();
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(pending_.data() + head.bytes);
+  if (!head.is_colour) {
+    frame.bytes.assign(bytes, bytes + pixels);
+  } else {
+    frame.bytes.reserve(pixels);
+    for (int v = 0; v < frame.height; ++v) {
+      for (int u = 0; u < frame.width; ++u, bytes += 3)
+        frame.bytes.push_back(bytes[frame.View().Channel(u, v)]);
+    }
+  }
+  pending_.erase(0, head.bytes + size);
+  return std::optional<Frame>(std::move(frame));
+}
+
+std::string ToPgm(const Frame& frame) {
+  std::string text = "P5\n";
+  if (frame.time_ns) text += "#" + std::string(kTime) + std::to_string(*frame.time_ns) + "\n";
+  text += std::to_string(frame.width) + " " + std::to_string(frame.height) + "\n255\n";
+  return text.append(frame.bytes.begin(), frame.bytes.end());
+}
+
+namespace {
+
+constexpr std::size_t kMostBytes = 64u << 20;
+
+}  // namespace
+
+Result<std::vector<std::string>> FramesOf(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string kind = entry.path().extension();
+    if (kind == ".pgm" || kind == ".ppm" || kind == ".yuyv") paths.push_back(entry.path());
+  }
+  if (error) return Failure("cannot read folder " + folder + ": " + error.message());
+  if (paths.empty())
+    return InvalidData(folder + " holds no frames; it must have .pgm, .ppm or .yuyv files");
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+Result<Frame> ReadFrame(const std::string& path, int width, int height) {
+  const auto text = config::ReadTextFile(path, kMostBytes);
+  if (!text) return text.error();
+  if (path.ends_with(".yuyv")) {
+    Frame frame{sphere::PixelFormat::kYuyv, width, height, {text->begin(), text->end()}, {}};
+    const std::size_t size = 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (frame.bytes.size() != size)
+      return InvalidData(path + ": has " + std::to_string(frame.bytes.size()) +
+                         " bytes, must have " + std::to_string(size));
+    return frame;
+  }
+  NetpbmReader reader;
+  reader.Add(*text);
+  auto frame = reader.Next();
+  if (!frame) return InvalidData(path + ": " + frame.error().message);
+  if (!*frame) return InvalidData(path + ": ends before its image does");
+  if ((**frame).width != width || (**frame).height != height)
+    return InvalidData(path + ": its size is not that of the camera file");
+  return std::move(**frame);
 }
 
 }  // namespace footing::frames

@@ -1,13 +1,16 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "common/base/result.h"
 #include "common/camera/find.h"
+#include "common/camera/image.h"
 #include "common/stream/device.h"
 
 namespace footing::frames {
@@ -61,5 +64,40 @@ Result<void> StoreLens(const std::string& path, const CameraFile& camera);
 
 /// "#ff00c8", as footing-ctl led takes it.
 std::string ColourText(std::uint32_t rgb);
+
+/// A frame and when its middle row was exposed.
+struct Frame {
+  sphere::PixelFormat format = sphere::PixelFormat::kSgrbg8;
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> bytes;
+  std::optional<std::int64_t> time_ns;  ///< As the frame says, on whatever clock.
+
+  sphere::Image View() const { return {format, width, height, bytes}; }
+};
+
+/// Reads PGM (P5: a mosaic G R / B G) and PPM (P6: of its colours those are taken that a mosaic
+/// has), one image after the other as a FIFO delivers them. A comment "# time_ns N" in the header
+/// is the time of exposure. Sizes: even, 32 to 4096; 8 bits.
+class NetpbmReader {
+ public:
+  void Add(std::string_view bytes) { pending_.append(bytes); }
+  /// The next whole image; nothing when more bytes are needed; an error when they hold no image,
+  /// after which the reader is of no more use.
+  Result<std::optional<Frame>> Next();
+  bool empty() const { return pending_.empty(); }
+
+ private:
+  std::string pending_;
+};
+
+/// A mosaic as a PGM, with its time where it has one.
+std::string ToPgm(const Frame& frame);
+
+/// The .pgm, .ppm and .yuyv files of a folder in the order of their names; an error when there is
+/// none.
+Result<std::vector<std::string>> FramesOf(const std::string& folder);
+
+/// One frame. A .yuyv file has no header: its size must be that of width and height.
+Result<Frame> ReadFrame(const std::string& path, int width, int height);
 
 }  // namespace footing::frames

@@ -1,17 +1,27 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "common/model/sha256.h"
 #include "common/base/result.h"
+
+namespace footing::model {
+
+using Digest = std::array<std::uint8_t, 32>;
+
+/// SHA-256 of the bytes (FIPS 180-4, section 6.2): distinguishes a damaged file from a whole one,
+/// and one data file from another.
+Digest Sha256(std::string_view bytes);
+
+/// In lower-case hexadecimal, as sha256sum prints it.
+std::string Hex(const Digest& digest);
 
 /// What footing-train makes and the pose engine runs: named float32 tensors with their provenance,
 /// one *.fmodel file each (docs/models.md).
-namespace footing::model {
-
 constexpr std::size_t kMostFileBytes = 4u << 20;
 constexpr std::uint32_t kVersion = 1;  ///< Of the container; a reader refuses any other.
 

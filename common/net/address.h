@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include <sys/types.h>
+
 #include "common/base/result.h"
 
 namespace footing::transport {
@@ -30,5 +32,47 @@ Result<Address> ParseAddress(const std::string& text);
 /// or "simulation". A client (`create` not set) finds the service's /run/footing/NAME.sock where
 /// the user has none of that name. Creates the folder with mode 0700 if `create` is set.
 Address DefaultAddress(const std::string& name, bool create = false);
+
+/// The address that an option of a client gives, or DefaultAddress(name) where its text is empty.
+inline Result<Address> AddressOrDefault(const std::string& text, const std::string& name) {
+  return text.empty() ? Result<Address>(DefaultAddress(name)) : ParseAddress(text);
+}
+
+/// What a server needs before it listens where others than this host's users reach it.
+/// What an administrator gives, by the names that the program has for it.
+struct ListenSettings {
+  std::string keys = "set token_file or clients_file";
+  std::string in_clear = "--set insecure_lan=true with a token_file";
+};
+
+/// Of an address that speaks TLS: usage error when nobody has a key, neither a token nor a
+/// certificate.
+Result<void> CheckKeys(const Address& address, bool has_keys, const ListenSettings& settings = {});
+
+/// Usage error for tcp: beyond this host, unless `in_clear` permits it.
+Result<void> CheckEncrypted(const Address& address, bool in_clear,
+                            const ListenSettings& settings = {});
+
+/// The folder of the sockets where there is no runtime directory: /tmp/footing-UID. Anybody may
+/// make that first, so it is trusted only if it is the own user's alone.
+std::string FallbackRunFolder();
+
+/// The folder of the default addresses of this user: $XDG_RUNTIME_DIR/footing, or the fallback.
+std::string RunFolder();
+
+/// Makes RunFolder() where the address is in it. A failure shows when the address is bound.
+void MakeRunFolderFor(const Address& address);
+
+/// An error when `folder` exists and is not a folder (a symbolic link is not one), belongs to
+/// another user, or others may write to it.
+Result<void> CheckRunFolder(const std::string& folder, uid_t own_user);
+
+/// CheckRunFolder for an address in the fallback folder; any other address passes.
+Result<void> CheckFolderOf(const Address& address);
+
+/// What a person does when no server answers, to be put behind `why`: "; " and `otherwise`, such as
+/// how to start one. Where this user may not open the service's sockets that would not help: then
+/// it is to join their group, or nothing where `why` says so already. Empty without `otherwise`.
+std::string RemedyFor(const std::string& why, const std::string& otherwise);
 
 }  // namespace footing::transport

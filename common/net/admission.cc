@@ -1,12 +1,296 @@
 #include "common/net/admission.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
-#include "common/net/handshake.h"
+#include "common/base/result.h"
 
 namespace footing::transport {
+namespace {
+
+void Set(std::vector<RetainedField>& retained, std::uint32_t field, const SharedTick& tick) {
+  for (RetainedField& one : retained) {
+    if (one.field == field) {
+      one.tick = tick;
+      return;
+    }
+  }
+  retained.push_back({field, tick});
+}
+
+}  // namespace
+
+TickQueue::TickQueue(QueueRule rule, std::size_t capacity, std::set<std::uint32_t> retained)
+    : rule_(rule),
+      capacity_(rule == QueueRule::kLatest ? 1 : std::max<std::size_t>(1, capacity)),
+      retained_(std::move(retained)) {}
+
+void TickQueue::Retain(const SharedTick& tick, std::vector<RetainedField>& retained) const {
+  for (const Slice& slice : tick->slices) {
+    if (retained_.count(slice.field) > 0) Set(retained, slice.field, tick);
+  }
+}
+
+void TickQueue::Skip(const SharedTick& tick) { Retain(tick, for_next_); }
+
+bool TickQueue::Push(SharedTick tick) {
+  if (entries_.size() >= capacity_) {
+    if (rule_ == QueueRule::kReliable) return false;
+    Add(std::move(tick));
+    DropOldest();
+    return true;
+  }
+  Add(std::move(tick));
+  return true;
+}
+
+void TickQueue::Add(SharedTick tick) {
+  if (entries_.full()) entries_.set_capacity(std::max<std::size_t>(2, 2 * entries_.capacity()));
+  entries_.push_back({std::move(tick), std::exchange(for_next_, {})});
+}
+
+void TickQueue::DropOldest() {
+  Entry oldest = std::move(entries_.front());
+  entries_.pop_front();
+  const std::uint64_t sequence = oldest.tick->sequence;
+  const std::uint64_t missing = oldest.tick->missing_from;
+  dropped_ = Dropped{dropped_ ? dropped_->from : missing != 0 ? missing : sequence, sequence};
+  ++dropped_ticks_;
+  // What the dropped one contained, then its own, then what its heir has already: the newest stays.
+  std::vector<RetainedField> retained = std::move(oldest.retained);
+  Retain(oldest.tick, retained);
+  Entry& heir = entries_.front();
+  for (const RetainedField& one : heir.retained) Set(retained, one.field, one.tick);
+  heir.retained = std::move(retained);
+}
+
+bool TickQueue::Pop(Entry& entry) {
+  if (entries_.empty()) return false;
+  entry = std::move(entries_.front());
+  entries_.pop_front();
+  return true;
+}
+
+namespace {
+
+constexpr std::uint32_t kDefaultQueueTicks = 256;
+constexpr double kSlowestHz = 0.001;
+
+QueueRule RuleOf(v1::QueuePolicy policy) {
+  switch (policy) {
+    case v1::QUEUE_POLICY_LATEST:
+      return QueueRule::kLatest;
+    case v1::QUEUE_POLICY_RELIABLE:
+      return QueueRule::kReliable;
+    default:  // Unspecified, or one of a later minor version.
+      return QueueRule::kDropOldest;
+  }
+}
+
+void SettleChannels(const v1::Subscribe& wish, const ServerOptions& options,
+                    EffectiveSubscription& settled) {
+  const std::set<std::string> wished(wish.channels().begin(), wish.channels().end());
+  std::set<std::string> unknown = wished;
+  for (const Channel& channel : options.channels) {
+    unknown.erase(channel.name);
+    if (!wished.empty() && wished.count(channel.name) == 0) continue;
+    settled.subscription.fields.insert(channel.field);
+    settled.answer.add_channels(channel.name);
+  }
+  settled.subscription.all = settled.subscription.fields.size() == options.channels.size();
+  for (const std::string& name : unknown) settled.answer.add_unknown_channels(name);
+}
+
+}  // namespace
+
+std::string RoleName(v1::Role role) {
+  switch (role) {
+    case v1::ROLE_VIEW:
+      return "view";
+    case v1::ROLE_LOG:
+      return "log";
+    case v1::ROLE_CONTROL:
+      return "control";
+    case v1::ROLE_ADMIN:
+      return "admin";
+    default:
+      return std::to_string(static_cast<int>(role));
+  }
+}
+
+v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message) {
+  v1::Refused refused;
+  refused.set_reason(reason);
+  refused.set_message(message);
+  return refused;
+}
+
+v1::Welcome MakeWelcome(const ServerOptions& options, std::uint64_t epoch, v1::Role role) {
+  v1::Welcome welcome;
+  welcome.set_server_id(options.server_id);
+  welcome.set_version(options.version);
+  welcome.set_epoch(epoch);
+  welcome.set_protocol_major(kProtocolMajor);
+  welcome.set_protocol_minor(kProtocolMinor);
+  welcome.set_granted_role(role);
+  for (const auto& capability : options.capabilities) welcome.add_capabilities(capability);
+  for (const auto& channel : options.channels) welcome.add_channels(channel.name);
+  v1::Limits& limits = *welcome.mutable_limits();
+  limits.set_max_message_in_bytes(options.max_message_in_bytes);
+  limits.set_max_message_out_bytes(options.max_message_out_bytes);
+  limits.set_max_queue_ticks(options.max_queue_ticks);
+  limits.set_ring_s(options.ring_s);
+  limits.set_tick_rate_hz(options.tick_rate_hz);
+  limits.set_max_messages_per_s(options.sessions.session_messages_per_s);
+  limits.set_max_message_burst(static_cast<std::uint32_t>(options.sessions.Input().message_burst));
+  return welcome;
+}
+
+EffectiveSubscription Settle(const v1::Subscribe& wish, const ServerOptions& options) {
+  EffectiveSubscription settled;
+  SettleChannels(wish, options, settled);
+  Subscription& subscription = settled.subscription;
+  const bool slower = wish.max_hz() > 0 && wish.max_hz() < options.tick_rate_hz;
+  subscription.max_hz = slower ? std::max(wish.max_hz(), kSlowestHz) : 0;
+  subscription.rule = RuleOf(wish.policy());
+  const std::uint32_t queue = wish.queue_ticks() == 0 ? kDefaultQueueTicks : wish.queue_ticks();
+  subscription.queue_ticks =
+      subscription.rule == QueueRule::kLatest ? 1 : std::min(queue, options.max_queue_ticks);
+  subscription.max_channel_bytes = options.max_message_out_bytes - kMaxTickHeadBytes;
+  settled.answer.set_max_hz(slower ? subscription.max_hz : options.tick_rate_hz);
+  settled.answer.set_policy(static_cast<v1::QueuePolicy>(subscription.rule));
+  settled.answer.set_queue_ticks(static_cast<std::uint32_t>(subscription.queue_ticks));
+  return settled;
+}
+
+void WriteBatch::AddOwned(std::string bytes) {
+  FOOTING_CHECK(free_buffers() > 0);
+  if (bytes.size() <= kHeadBytes) {
+    AddHead(bytes.data(), bytes.size());
+    return;
+  }
+  owned_.push_back(std::make_unique<const std::string>(std::move(bytes)));
+  buffers_.emplace_back(owned_.back()->data(), owned_.back()->size());
+}
+
+void WriteBatch::AddHead(const char* bytes, std::size_t size) {
+  FOOTING_CHECK(free_buffers() > 0 && size <= kHeadBytes);
+  auto& head = heads_[heads_used_++];
+  std::copy(bytes, bytes + size, head.begin());
+  buffers_.emplace_back(head.data(), size);
+}
+
+void WriteBatch::AddShared(std::shared_ptr<const void> owner, const char* bytes, std::size_t size) {
+  FOOTING_CHECK(free_buffers() > 0);
+  if (shared_.empty() || shared_.back() != owner) shared_.push_back(std::move(owner));
+  buffers_.emplace_back(bytes, size);
+}
+
+void WriteBatch::Consume(std::size_t bytes) {
+  while (first_ < buffers_.size() && bytes >= buffers_[first_].size()) {
+    bytes -= buffers_[first_].size();
+    ++first_;
+  }
+  if (first_ < buffers_.size()) {
+    buffers_[first_] += bytes;
+    return;
+  }
+  buffers_.clear();
+  first_ = 0;
+  heads_used_ = 0;
+  owned_.clear();
+  shared_.clear();
+}
+
+std::unique_ptr<WriteBatch> BatchPool::Take() {
+  if (free_.empty()) return std::make_unique<WriteBatch>();
+  std::unique_ptr<WriteBatch> batch = std::move(free_.back());
+  free_.pop_back();
+  return batch;
+}
+
+void BatchPool::Give(std::unique_ptr<WriteBatch> batch) {
+  constexpr std::size_t kMaxFree = 16;
+  FOOTING_CHECK(batch->empty());
+  if (free_.size() < kMaxFree) free_.push_back(std::move(batch));
+}
+
+namespace {
+
+/// A stretch of one tick's bytes.
+struct Piece {
+  const SharedTick* tick = nullptr;
+  std::size_t begin = 0;
+  std::size_t size = 0;
+};
+
+void Add(const SharedTick& tick, const Slice& slice, std::vector<Piece>& pieces) {
+  if (!pieces.empty()) {
+    Piece& last = pieces.back();
+    if (last.tick->get() == tick.get() && last.begin + last.size == slice.begin) {
+      last.size += slice.size;  // Neighbours go out as one.
+      return;
+    }
+  }
+  pieces.push_back({&tick, slice.begin, slice.size});
+}
+
+std::vector<Piece> PiecesOf(const TickQueue::Entry& entry, const Subscription& subscription) {
+  std::vector<Piece> pieces;
+  for (const Slice& slice : entry.tick->slices) {
+    if (subscription.fields.count(slice.field) > 0) Add(entry.tick, slice, pieces);
+  }
+  std::size_t size = entry.tick->fields().size();
+  for (const RetainedField& retained : entry.retained) {
+    const bool wanted = subscription.fields.count(retained.field) > 0;
+    if (!wanted || entry.tick->Find(retained.field) != nullptr) continue;
+    const Slice& slice = *retained.tick->Find(retained.field);
+    if (size + slice.size > subscription.max_channel_bytes) continue;
+    size += slice.size;
+    Add(retained.tick, slice, pieces);
+  }
+  return pieces;
+}
+
+void AddHead(const TickHead& head, std::size_t channel_bytes, WriteBatch& batch) {
+  char bytes[kMaxTickHeadBytes];
+  batch.AddHead(bytes, EncodeTickHead(head, channel_bytes, bytes));
+}
+
+}  // namespace
+
+void AddTick(const TickQueue::Entry& entry, const Subscription& subscription, TickHead head,
+             WriteBatch& batch) {
+  static_assert(kMaxTickHeadBytes <= WriteBatch::kHeadBytes);
+  head.sequence = entry.tick->sequence;
+  head.host_ns = entry.tick->host_ns;
+  if (subscription.all && entry.retained.empty()) {  // The usual case.
+    const std::string& bytes = entry.tick->bytes;
+    if (!head.refilled) return batch.AddShared(entry.tick, bytes.data(), bytes.size());
+    const std::string_view fields = entry.tick->fields();
+    AddHead(head, fields.size(), batch);
+    if (!fields.empty()) batch.AddShared(entry.tick, fields.data(), fields.size());
+    return;
+  }
+  const std::vector<Piece> pieces = PiecesOf(entry, subscription);
+  std::size_t size = 0;
+  for (const Piece& piece : pieces) size += piece.size;
+  AddHead(head, size, batch);
+  if (pieces.size() < kBuffersPerTick) {
+    for (const Piece& piece : pieces) {
+      batch.AddShared(*piece.tick, (*piece.tick)->bytes.data() + piece.begin, piece.size);
+    }
+    return;
+  }
+  std::string copied;
+  copied.reserve(size);
+  for (const Piece& piece : pieces) copied.append((*piece.tick)->bytes, piece.begin, piece.size);
+  batch.AddOwned(std::move(copied));
+}
+
 namespace {
 
 constexpr std::size_t kMostNameBytes = 64;

@@ -1,21 +1,196 @@
 #pragma once
 
-#include <sys/types.h>
-
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
-#include "common/net/peer.h"
+#include <sys/types.h>
+#include <boost/asio/buffer.hpp>
+#include <boost/circular_buffer.hpp>
+
+#include "common/net/access.h"
+#include "common/net/limits.h"
 #include "common/net/server.h"
-#include "common/net/session_limits.h"
-#include "common/net/token.h"
+#include "common/net/tick.h"
 #include "footing/v1/session.pb.h"
+
+namespace footing::transport {
+
+/// What a session's full queue does; numbers as in v1::QueuePolicy.
+enum class QueueRule { kLatest = 1, kDropOldest = 2, kReliable = 3 };
+
+/// A channel's field out of another tick than the one it goes along with.
+struct RetainedField {
+  std::uint32_t field = 0;
+  SharedTick tick;
+};
+
+/// Ticks dropped because the queue was full: first and last sequence.
+struct Dropped {
+  std::uint64_t from = 0;
+  std::uint64_t to = 0;
+};
+
+/// The ticks that wait for one session, bounded, with the ticks themselves shared.
+///
+/// A retained channel says how things stand, so its newest value must not be lost with a tick that
+/// was dropped or left out by decimation: it is added to the next tick that goes out.
+class TickQueue {
+ public:
+  struct Entry {
+    SharedTick tick;
+    std::vector<RetainedField> retained;
+  };
+
+  TickQueue() = default;
+  /// `capacity` >= 1; kLatest has one of 1 whatever is said. `retained`: fields that are retained.
+  TickQueue(QueueRule rule, std::size_t capacity, std::set<std::uint32_t> retained);
+
+  /// False for kReliable when the queue is full: the session has to end.
+  bool Push(SharedTick tick);
+  /// A tick that is left out on purpose: nothing is missing, but retained channels are kept.
+  void Skip(const SharedTick& tick);
+
+  /// What was dropped in front of the oldest tick, once.
+  std::optional<Dropped> TakeDropped() { return std::exchange(dropped_, std::nullopt); }
+  bool Pop(Entry& entry);
+
+  /// The oldest tick that waits; null: none.
+  const Tick* oldest() const { return entries_.empty() ? nullptr : entries_.front().tick.get(); }
+
+  bool empty() const { return entries_.empty(); }
+  std::size_t size() const { return entries_.size(); }
+  std::uint64_t dropped_ticks() const { return dropped_ticks_; }
+
+ private:
+  void Add(SharedTick tick);
+  void DropOldest();
+  void Retain(const SharedTick& tick, std::vector<RetainedField>& retained) const;
+
+  QueueRule rule_ = QueueRule::kDropOldest;
+  std::size_t capacity_ = 1;
+  std::set<std::uint32_t> retained_;
+  /// Grows when it must. Mostly one tick waits at a time, and a server of a thousand sessions
+  /// should find it in few lines of the cache.
+  boost::circular_buffer<Entry> entries_;
+  std::vector<RetainedField> for_next_;  ///< Retained fields of ticks skipped since the last Push.
+  std::optional<Dropped> dropped_;
+  std::uint64_t dropped_ticks_ = 0;
+};
+
+/// The answers to Hello and Subscribe, as functions of what was asked; admission.h decides who gets
+/// them.
+inline constexpr std::uint32_t kProtocolMajor = 1;
+inline constexpr std::uint32_t kProtocolMinor = 0;
+
+/// As a person reads it; the number of one that this version does not know.
+std::string RoleName(v1::Role role);
+
+v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message);
+
+/// A Welcome but for its stamps.
+v1::Welcome MakeWelcome(const ServerOptions& options, std::uint64_t epoch, v1::Role role);
+
+/// What a session gets, after the server's limits.
+struct Subscription {
+  std::set<std::uint32_t> fields;
+  bool all = false;   ///< Every channel: the tick's bytes go out as one piece.
+  double max_hz = 0;  ///< 0: every tick.
+  QueueRule rule = QueueRule::kDropOldest;
+  std::size_t queue_ticks = 1;
+  std::size_t max_channel_bytes = 0;  ///< Of one tick, with what it carries along.
+};
+
+/// The effective subscription and the answer that says so (but for first_sequence).
+struct EffectiveSubscription {
+  Subscription subscription;
+  v1::Subscribed answer;
+};
+EffectiveSubscription Settle(const v1::Subscribe& wish, const ServerOptions& options);
+
+/// Which server a client is connected to, and what a new connection resumes.
+struct ServerPosition {
+  std::string name;
+  std::uint64_t epoch = 0;
+  /// Of the last tick, which may be of an epoch before: the connection may break between.
+  std::uint64_t last_epoch = 0;
+  std::uint64_t last_sequence = 0;
+
+  /// A live tick has come.
+  void Take(std::uint64_t sequence) {
+    last_sequence = last_epoch == epoch ? std::max(last_sequence, sequence) : sequence;
+    last_epoch = epoch;
+  }
+};
+
+/// What one gather-write sends: small pieces of its own beside bytes that many sessions share.
+/// It keeps all of them alive until they are written.
+class WriteBatch {
+ public:
+  /// As many buffers as one writev(2) of Asio takes.
+  static constexpr std::size_t kMaxBuffers = 64;
+  static constexpr std::size_t kHeadBytes = 64;
+
+  WriteBatch() { buffers_.reserve(kMaxBuffers); }
+  WriteBatch(const WriteBatch&) = delete;
+  WriteBatch& operator=(const WriteBatch&) = delete;
+
+  bool empty() const { return first_ == buffers_.size(); }
+  std::size_t free_buffers() const { return kMaxBuffers - buffers_.size(); }
+
+  /// Bytes that belong to this batch alone.
+  void AddOwned(std::string bytes);
+  /// At most kHeadBytes, copied.
+  void AddHead(const char* bytes, std::size_t size);
+  /// A part of shared bytes. `owner` is kept until the batch is written.
+  void AddShared(std::shared_ptr<const void> owner, const char* bytes, std::size_t size);
+
+  std::span<const boost::asio::const_buffer> buffers() const {
+    return std::span(buffers_).subspan(first_);
+  }
+  /// `bytes` more are written. The batch is empty again once all are.
+  void Consume(std::size_t bytes);
+
+ private:
+  std::vector<boost::asio::const_buffer> buffers_;
+  std::size_t first_ = 0;
+  std::array<std::array<char, kHeadBytes>, kMaxBuffers> heads_;
+  std::size_t heads_used_ = 0;
+  std::vector<std::unique_ptr<const std::string>> owned_;
+  std::vector<std::shared_ptr<const void>> shared_;
+};
+
+/// Empty batches for the connections of one thread. The one given back last is taken first: with
+/// many sessions served one after the other it is still in the processor's cache, which a batch of
+/// each session's own would not be.
+class BatchPool {
+ public:
+  std::unique_ptr<WriteBatch> Take();
+  void Give(std::unique_ptr<WriteBatch> batch);
+
+ private:
+  std::vector<std::unique_ptr<WriteBatch>> free_;
+};
+
+/// Buffers that one tick may take in a batch; a tick of more pieces is copied into one.
+inline constexpr std::size_t kBuffersPerTick = 8;
+
+/// Adds the frame of one tick: a head of this session's own, and the shared bytes of the channels
+/// subscribed to. `head` says all but what the tick does. The batch has space for kBuffersPerTick.
+void AddTick(const TickQueue::Entry& entry, const Subscription& subscription, TickHead head,
+             WriteBatch& batch);
 
 /// Who may come in, and as what: a state machine over the Hello messages of all sessions of a
 /// server, without sockets and clocks.
-namespace footing::transport {
-
 /// Whose Hello it is, as the kernel and TLS know it.
 struct Caller {
   Peer peer;

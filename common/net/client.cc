@@ -1,21 +1,26 @@
 #include "common/net/client.h"
 
 #include <chrono>
+#include <cstdlib>
 #include <optional>
 #include <random>
+#include <string_view>
 #include <utility>
 
-#include "common/runtime/clock.h"
-#include "common/runtime/timer.h"
-#include "common/net/backoff.h"
-#include "common/net/client_messages.h"
-#include "common/net/clock_probes.h"
-#include "common/net/framed_connection.h"
-#include "common/net/message_parser.h"
-#include "common/net/pending_commands.h"
-#include "common/net/server_position.h"
-#include "common/base/time.h"
+#include <unistd.h>
+
 #include "common/base/units.h"
+#include "common/net/access.h"
+#include "common/net/address.h"
+#include "common/net/admission.h"
+#include "common/net/clock_offset.h"
+#include "common/net/framing.h"
+#include "common/net/known_servers.h"
+#include "common/net/socket.h"
+#include "common/net/tls_context.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
+#include "common/runtime/timer.h"
 
 namespace footing::transport {
 class Client::Implementation : public std::enable_shared_from_this<Implementation> {
@@ -296,5 +301,211 @@ void Client::Refill(std::uint64_t from_sequence, std::uint64_t to_sequence) {
 }
 LinkState Client::state() const { return implementation_->state(); }
 ClockOffset Client::clock() const { return implementation_->clock(); }
+
+namespace {
+
+bool MaySendSecretTo(const Address& address) {
+  if (address.kind != Address::Kind::kTcp || StaysOnThisHost(address)) return true;
+  const char* const allowed = std::getenv("FOOTING_INSECURE_LAN");
+  return allowed != nullptr && std::string_view(allowed) == "1";
+}
+
+}  // namespace
+
+Result<v1::Envelope> MakeHello(const ClientOptions& options) {
+  const bool ask_environment = options.token.empty() && options.address.OverTcp();
+  const auto token = ask_environment ? TokenFromEnvironment() : Result<std::string>(options.token);
+  if (!token) return token.error();
+  if (!token->empty() && !MaySendSecretTo(options.address)) {
+    return UsageError(options.address.Text() +
+                      ": the token is not sent without encryption; connect with tls:HOST:PORT, or, "
+                      "in a network that you trust wholly, set FOOTING_INSECURE_LAN=1");
+  }
+  v1::Envelope message;
+  v1::Hello& hello = *message.mutable_hello();
+  hello.set_protocol_major(kProtocolMajor);
+  hello.set_protocol_minor(kProtocolMinor);
+  hello.set_role(options.role);
+  hello.set_token(*token);
+  hello.set_client_name(options.client_name);
+  return message;
+}
+
+v1::Envelope MakeSubscribe(const ClientOptions& options, std::uint64_t epoch,
+                           std::uint64_t last_epoch, std::uint64_t last_sequence) {
+  v1::Envelope message;
+  v1::Subscribe& wish = *message.mutable_subscribe();
+  for (const auto& channel : options.channels) wish.add_channels(channel);
+  wish.set_max_hz(options.max_hz);
+  wish.set_policy(options.policy);
+  wish.set_queue_ticks(options.queue_ticks);
+  if (last_sequence != 0 && options.policy != v1::QUEUE_POLICY_LATEST) {
+    wish.set_from_sequence(last_sequence + 1);
+    wish.set_from_epoch(last_epoch);
+  } else if (options.from_ring_start) {
+    wish.set_from_sequence(0);  // Whatever the ring holds.
+    wish.set_from_epoch(epoch);
+  }
+  return message;
+}
+
+v1::Envelope MakeRefill(std::uint64_t from_sequence, std::uint64_t to_sequence) {
+  v1::Envelope message;
+  message.mutable_refill()->set_from_sequence(from_sequence);
+  message.mutable_refill()->set_to_sequence(to_sequence);
+  return message;
+}
+
+v1::Envelope MakePing(std::uint64_t id, std::int64_t now_ns) {
+  v1::Envelope message;
+  message.mutable_ping()->set_id(id);
+  message.mutable_ping()->set_t0_ns(now_ns);
+  return message;
+}
+
+v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_t now_ns) {
+  v1::Envelope message;
+  v1::Pong& pong = *message.mutable_pong();
+  pong.set_id(ping.id());
+  pong.set_t0_ns(ping.t0_ns());
+  pong.set_t1_ns(arrived_ns);
+  pong.set_t2_ns(now_ns);
+  return message;
+}
+
+std::string WaitingText(const std::string& dial_error, const std::string& last_reason) {
+  return "cannot connect to " + dial_error + RemedyFor(dial_error, "") +
+         (last_reason.empty() ? "" : "; the last one said: " + last_reason);
+}
+
+namespace {
+
+constexpr std::size_t kMaxWaitingCommands = 64;
+
+v1::CommandResult FailedCommand(std::uint64_t id, const std::string& why) {
+  v1::CommandResult result;
+  result.set_id(id);
+  result.set_message(why);
+  return result;
+}
+
+}  // namespace
+
+std::optional<v1::Command> PendingCommands::Add(v1::Command command, const Done& done,
+                                                std::int64_t now_ns) {
+  command.set_id(++last_id_);
+  if (waiting_.size() >= kMaxWaitingCommands) {
+    done(FailedCommand(command.id(), "too many commands wait for their answers"));
+    return std::nullopt;
+  }
+  const std::uint32_t deadline_ms =
+      command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
+  waiting_[command.id()] = {done, now_ns + std::int64_t{deadline_ms} * kNanosecondsPerMillisecond};
+  return command;
+}
+
+void PendingCommands::Refuse(const Done& done, const std::string& why) {
+  done(FailedCommand(++last_id_, why));
+}
+
+void PendingCommands::TakeAnswer(const v1::CommandResult& answer) {
+  const auto found = waiting_.find(answer.id());
+  if (found == waiting_.end()) return;
+  const Done done = std::move(found->second.done);
+  waiting_.erase(found);
+  done(answer);
+}
+
+void PendingCommands::Expire(std::int64_t now_ns) {
+  for (auto next = waiting_.begin(); next != waiting_.end();) {
+    const auto one = next++;
+    if (now_ns < one->second.deadline_ns) continue;
+    const Done done = std::move(one->second.done);
+    const std::uint64_t id = one->first;
+    waiting_.erase(one);
+    done(FailedCommand(id, "no answer within its deadline; it may still be carried out"));
+  }
+}
+
+void PendingCommands::Fail(const std::string& why) {
+  const auto waiting = std::exchange(waiting_, {});
+  for (const auto& [id, one] : waiting) one.done(FailedCommand(id, why));
+}
+
+std::shared_ptr<ServerTrust> ServerTrust::Of(const Address& address) {
+  return std::make_shared<ServerTrust>(KnownName(address),
+                                       tls::KnownServers(tls::KnownServersFile()));
+}
+
+std::string ServerTrust::WhyRefused(const std::string& fingerprint) {
+  const auto known = known_.Find(server_);
+  if (!known) return "not connected to tls:" + server_ + ": " + known.error().message;
+  if (*known) {
+    if (**known == fingerprint) return "";
+    return "tls:" + server_ + ": THE CERTIFICATE HAS CHANGED: it is " + fingerprint + ", and " +
+           known_.path() + " has " + **known +
+           "; either the server made a new one, or somebody else answers in its place. Compare it "
+           "with what footing-ctl trust prints on the server; if it is the same, run: footing-ctl "
+           "trust tls:" +
+           server_ + " " + fingerprint;
+  }
+  is_new_ = true;
+  return "";
+}
+
+std::string ServerTrust::OnProved(const std::string& fingerprint) {
+  if (!is_new_) return "";
+  // Who cannot remember it would trust anybody, each time.
+  if (const auto added = known_.Add(server_, fingerprint); !added) {
+    return "not connected to tls:" + server_ + ": its certificate " + fingerprint +
+           " cannot be remembered: " + added.error().message;
+  }
+  is_new_ = false;
+  log::Warning("trusting tls:" + server_ + " from now on: its certificate is " + fingerprint +
+               "; compare it with what footing-ctl trust prints on the server");
+  return "";
+}
+
+std::string KnownName(const Address& address) { return address.Text().substr(sizeof("tls:") - 1); }
+
+namespace {
+
+/// Keeps the context of a loop's clients.
+class ClientTls : public boost::asio::execution_context::service {
+ public:
+  using key_type = ClientTls;
+  inline static boost::asio::execution_context::id id;
+
+  explicit ClientTls(boost::asio::execution_context& owner) : service(owner) {}
+
+  std::optional<tls::Context> context;
+  bool shows_own = false;  ///< The user's own certificate.
+
+ private:
+  void shutdown() override {}
+};
+
+Result<tls::Context> NewClientContext(const std::string& path, bool shows_own) {
+  if (!shows_own) return tls::Context::ForClient(nullptr);
+  const auto own = tls::Identity::Load(path);
+  if (!own) return own.error();
+  return tls::Context::ForClient(&*own);
+}
+
+}  // namespace
+
+Result<tls::Context> ClientContext(boost::asio::io_context& io) {
+  auto& kept = boost::asio::use_service<ClientTls>(io);
+  const std::string path = tls::ClientIdentityFile();
+  const bool shows_own = !path.empty() && access(path.c_str(), F_OK) == 0;
+  // A certificate that was made while this client ran is shown from the next connection on.
+  if (!kept.context || (shows_own && !kept.shows_own)) {
+    auto made = NewClientContext(path, shows_own);
+    if (!made) return made;
+    kept.context = std::move(made).value();
+    kept.shows_own = shows_own;
+  }
+  return *kept.context;
+}
 
 }  // namespace footing::transport

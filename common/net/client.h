@@ -1,13 +1,22 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include <boost/asio/io_context.hpp>
+
+#include "common/base/result.h"
 #include "common/net/address.h"
+#include "common/net/known_servers.h"
+#include "common/net/tls_context.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::transport {
@@ -87,6 +96,129 @@ class Client {
  private:
   class Implementation;
   std::shared_ptr<Implementation> implementation_;
+};
+
+/// What a client says to its server, as functions of what it knows.
+/// Over TCP with the token of the environment where the options have none; an error when its file
+/// cannot be used. Beyond this host a token goes over tcp:, where everybody on the way can read it,
+/// only with FOOTING_INSECURE_LAN=1; an error otherwise.
+Result<v1::Envelope> MakeHello(const ClientOptions& options);
+
+/// Asks for the ticks behind `last_sequence` of `last_epoch`, or, when that is 0, for those that
+/// the options say. `epoch` is that of the server that welcomed us.
+v1::Envelope MakeSubscribe(const ClientOptions& options, std::uint64_t epoch,
+                           std::uint64_t last_epoch, std::uint64_t last_sequence);
+
+v1::Envelope MakeRefill(std::uint64_t from_sequence, std::uint64_t to_sequence);
+v1::Envelope MakePing(std::uint64_t id, std::int64_t now_ns);
+v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_t now_ns);
+
+/// What a client that finds nobody says: the dial's error, and the reason that the server gave when
+/// it ended the last connection, if it did.
+std::string WaitingText(const std::string& dial_error, const std::string& last_reason);
+
+/// The commands of a client that wait for their answers. Each gets exactly one call of `done`.
+class PendingCommands {
+ public:
+  using Done = std::function<void(const v1::CommandResult&)>;
+
+  /// Gives the command its id and waits for its answer until its deadline. Nothing, and `done` is
+  /// called, when too many wait already.
+  std::optional<v1::Command> Add(v1::Command command, const Done& done, std::int64_t now_ns);
+  /// Refuses a command that cannot be sent.
+  void Refuse(const Done& done, const std::string& why);
+  void TakeAnswer(const v1::CommandResult& answer);
+  /// Fails those whose deadline has passed.
+  void Expire(std::int64_t now_ns);
+  /// Fails all.
+  void Fail(const std::string& why);
+
+ private:
+  struct Waiting {
+    Done done;
+    std::int64_t deadline_ns = 0;
+  };
+
+  std::uint64_t last_id_ = 0;
+  std::map<std::uint64_t, Waiting> waiting_;
+};
+
+/// Of a command that states none.
+inline constexpr std::uint32_t kDefaultDeadlineMs = 1000;
+
+/// The answers to a session's last commands, so that a repeated id gets its first answer again.
+class Answers {
+ public:
+  explicit Answers(std::size_t capacity) : capacity_(capacity) {}
+
+  /// Null when that id was not answered, or too long ago.
+  const v1::CommandResult* Find(std::uint64_t id) const {
+    const auto found = by_id_.find(id);
+    return found == by_id_.end() ? nullptr : &found->second;
+  }
+
+  void Remember(const v1::CommandResult& answer) {
+    if (!by_id_.emplace(answer.id(), answer).second) return;
+    order_.push_back(answer.id());
+    if (order_.size() <= capacity_) return;
+    by_id_.erase(order_.front());
+    order_.pop_front();
+  }
+
+ private:
+  std::size_t capacity_;
+  std::deque<std::uint64_t> order_;
+  std::unordered_map<std::uint64_t, v1::CommandResult> by_id_;
+};
+
+/// Which certificate a client takes from a tls: server. The first one that it sees is remembered in
+/// the user's file of known servers, and logged; another one later is refused, since nobody can say
+/// whether the server made a new one or somebody else answers in its place.
+class ServerTrust {
+ public:
+  static std::shared_ptr<ServerTrust> Of(const Address& address);
+
+  ServerTrust(std::string server, tls::KnownServers known)
+      : server_(std::move(server)), known_(std::move(known)) {}
+
+  /// Why the certificate is refused; empty when it is not.
+  std::string WhyRefused(const std::string& fingerprint);
+  /// The server has proved that the certificate is its own: a new one is remembered. Why it is
+  /// refused all the same; empty when it is not.
+  std::string OnProved(const std::string& fingerprint);
+
+ private:
+  std::string server_;
+  tls::KnownServers known_;
+  bool is_new_ = false;
+};
+
+/// The name of a server in the file of known servers: "HOST:PORT".
+std::string KnownName(const Address& address);
+
+/// What clients connect with: the user's own certificate where there is one, which
+/// `footing-ctl trust --client` makes (see tls::ClientIdentityFile). Made once for all of a loop,
+/// since that takes as long as a handshake's computations.
+Result<tls::Context> ClientContext(boost::asio::io_context& io);
+
+/// How long to wait between tries: doubled each time, from `min_s` to `max_s`, times a random
+/// factor from 0.5 to 1 so that many clients do not come back at one instant. A plain value.
+class Backoff {
+ public:
+  Backoff(double min_s, double max_s) : min_s_(min_s), max_s_(max_s), next_s_(min_s) {}
+
+  /// `random` is uniform in [0, 1).
+  double Next(double random) {
+    const double wait_s = next_s_ * (0.5 + 0.5 * random);
+    next_s_ = next_s_ * 2 < max_s_ ? next_s_ * 2 : max_s_;
+    return wait_s;
+  }
+  void Reset() { next_s_ = min_s_; }
+
+ private:
+  double min_s_;
+  double max_s_;
+  double next_s_;
 };
 
 }  // namespace footing::transport

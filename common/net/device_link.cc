@@ -5,11 +5,11 @@
 #include <string_view>
 #include <utility>
 
+#include "common/net/address.h"
+#include "common/net/framing.h"
+#include "common/net/socket.h"
 #include "common/runtime/log.h"
 #include "common/runtime/timer.h"
-#include "common/net/framed_connection.h"
-#include "common/net/run_folder.h"
-#include "common/net/socket.h"
 #include "common/wire/wire.h"
 
 namespace footing::device_link {

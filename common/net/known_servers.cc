@@ -1,16 +1,16 @@
 #include "common/net/known_servers.h"
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-#include <sstream>
-
-#include "common/runtime/data_file.h"
-#include "common/runtime/write_file.h"
-#include "common/net/fingerprint.h"
+#include "common/net/tls_context.h"
+#include "common/runtime/files.h"
 
 namespace footing::tls {
 namespace {
@@ -60,6 +60,39 @@ Result<void> KnownServers::Add(const std::string& server, const std::string& fin
   const std::string why = std::strerror(errno);
   close(file);
   return written ? Result<void>() : Failure(path_ + ": " + why);
+}
+
+namespace {
+
+std::string Variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// The file in the folder of Footing: below $`variable` if set, else below ~/`in_home`.
+std::string FootingFile(const char* variable, const std::string& in_home, const std::string& file) {
+  const std::string xdg = Variable(variable);
+  if (!xdg.empty()) return xdg + "/footing/" + file;
+  const std::string home = Variable("HOME");
+  return home.empty() ? "" : home + "/" + in_home + "/footing/" + file;
+}
+
+}  // namespace
+
+std::string DefaultIdentityFile() {
+  const std::string systemd = Variable("STATE_DIRECTORY");
+  if (!systemd.empty()) return systemd.substr(0, systemd.find(':')) + "/identity.pem";
+  return FootingFile("XDG_STATE_HOME", ".local/state", "identity.pem");
+}
+
+std::string KnownServersFile() {
+  const std::string named = Variable("FOOTING_KNOWN_SERVERS");
+  return named.empty() ? FootingFile("XDG_CONFIG_HOME", ".config", "known_servers") : named;
+}
+
+std::string ClientIdentityFile() {
+  const std::string known = KnownServersFile();
+  return known.empty() ? "" : known.substr(0, known.rfind('/') + 1) + "client.pem";
 }
 
 }  // namespace footing::tls

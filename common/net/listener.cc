@@ -12,11 +12,10 @@
 #include <optional>
 #include <utility>
 
+#include "common/net/address.h"
+#include "common/net/socket.h"
 #include "common/runtime/service_manager.h"
 #include "common/runtime/timer.h"
-#include "common/net/exposure.h"
-#include "common/net/run_folder.h"
-#include "common/net/unix_socket_file.h"
 
 namespace footing::transport {
 namespace {

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "common/base/result.h"
-#include "common/net/context.h"
 #include "common/net/address.h"
 #include "common/net/socket.h"
+#include "common/net/tls_context.h"
 
 namespace footing::transport {
 

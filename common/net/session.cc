@@ -1,15 +1,109 @@
 #include "common/net/session.h"
 
-#include <boost/asio/post.hpp>
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "common/runtime/clock.h"
-#include "common/net/command_content.h"
-#include "common/base/time.h"
+#include <fcntl.h>
+#include <google/protobuf/descriptor.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <boost/asio/post.hpp>
+
+#include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/net/admission.h"
+#include "common/net/framing.h"
+#include "common/runtime/clock.h"
+#include "common/wire/wire.h"
 
 namespace footing::transport {
+
+Decimator::Decimator(double max_hz, std::int64_t tick_ns)
+    : interval_ns_(max_hz > 0 ? PeriodNanoseconds(max_hz) : 0),
+      slack_ns_(std::min(tick_ns, interval_ns_) / 2) {}
+
+bool Decimator::Take(std::int64_t host_ns) {
+  if (interval_ns_ == 0) return true;
+  const bool restarted = last_ns_ == INT64_MIN || host_ns < last_ns_;
+  last_ns_ = host_ns;
+  if (!restarted && host_ns < due_ns_ - slack_ns_) return false;
+  const std::int64_t earliest = host_ns + interval_ns_ - slack_ns_;
+  due_ns_ = restarted ? host_ns + interval_ns_ : std::max(due_ns_ + interval_ns_, earliest);
+  return true;
+}
+
+namespace {
+
+const char* NameOf(QueueRule rule) {
+  switch (rule) {
+    case QueueRule::kLatest:
+      return "latest";
+    case QueueRule::kDropOldest:
+      return "drop_oldest";
+    case QueueRule::kReliable:
+      return "reliable";
+  }
+  return "";
+}
+
+}  // namespace
+
+void SessionRecord::TakePong(const v1::Pong& pong, std::int64_t arrived_ns) {
+  const bool answers = ping.unanswered && pong.id() == ping.id;
+  ping.unanswered = false;
+  if (answers) clock.Add({ping.sent_ns, pong.t1_ns(), pong.t2_ns(), arrived_ns});
+}
+
+stream::SessionStats Session::Stats() const {
+  const std::int64_t now_ns = shared_.NowNs();
+  stream::SessionStats stats;
+  stats.session = info_.session;
+  stats.client_name = info_.client_name;
+  stats.role = RoleName(info_.role);
+  stats.local = peer_.known;
+  stats.connected_s = NanosecondsToSeconds(now_ns - record_.began_ns);
+  stats.ticks_sent = record_.ticks_sent;
+  stats.ticks_dropped = record_.ticks_dropped + queue_.dropped_ticks();
+  stats.slowed = record_.slowed;
+  const OffsetEstimate clock = record_.clock.estimate();
+  stats.clock_valid = clock.valid;
+  stats.clock_offset_s = NanosecondsToSeconds(clock.offset_ns);
+  stats.clock_uncertainty_s = NanosecondsToSeconds(clock.uncertainty_ns);
+  if (phase_ != Phase::kSubscribed) return stats;
+  stats.policy = NameOf(subscription_.rule);
+  stats.queue_capacity = static_cast<std::uint32_t>(subscription_.queue_ticks);
+  std::uint64_t waiting = queue_.size();
+  const Tick* oldest = queue_.oldest();
+  if (replay_.catch_up != 0) {
+    const TickRing& ring = shared_.publication.ring();
+    const std::uint64_t next =
+        ring.empty() ? replay_.catch_up : std::max(replay_.catch_up, ring.first());
+    const SharedTick* tick = ring.AtOrAfter(next);
+    if (tick != nullptr) {
+      oldest = tick->get();
+      waiting = ring.CountFrom(next);
+    }
+  }
+  stats.queue_ticks = static_cast<std::uint32_t>(waiting);
+  if (oldest != nullptr) stats.lag_s = NanosecondsToSeconds(now_ns - oldest->host_ns);
+  return stats;
+}
+
+v1::ConnectedSession Session::Describe() const {
+  v1::ConnectedSession described;
+  *described.mutable_stats() = wire::ToProto(Stats());
+  if (peer_.known) described.set_user(peer_.user);
+  described.set_host(peer_.host);
+  described.set_granted_by(Name(admitted_.grant));
+  described.set_certificate(admitted_.claim.certificate);
+  return described;
+}
+
 namespace {
 
 constexpr std::size_t kMaxQueuedAnswers = 64;
@@ -254,6 +348,579 @@ void Session::End(const std::string& reason) {
   v1::Envelope message;
   message.mutable_goodbye()->set_reason(reason);
   connection_.Finish(message.SerializeAsString(), reason);
+}
+
+/// The part of Session that lets a client in.
+void Session::OnHello(const v1::Hello& hello) {
+  const Caller caller{peer_, connection_.secured(), connection_.peer_fingerprint()};
+  auto admission = Admit(shared_.options, {geteuid(), getegid()}, caller, hello, shared_.NowNs(),
+                         shared_.admission);
+  if (const auto* why = std::get_if<NotAdmitted>(&admission)) {
+    if (why->lack != Lack::kNone) shared_.SayDenied(peer_.host, why->lack, why->lack_text);
+    if (!why->waits) return Refused(why->answer.reason(), why->answer.message());
+    phase_ = Phase::kGuessed;
+    guess_answer_ = why->answer.message();
+    return ArmTimer(shared_.options.wrong_token_wait_s);
+  }
+  admitted_ = std::get<Admitted>(std::move(admission));
+  info_.client_name = admitted_.client_name;
+  info_.role = admitted_.role;
+  phase_ = Phase::kWelcomed;
+  v1::Envelope message;
+  *message.mutable_welcome() = MakeWelcome(shared_.options, shared_.epoch, info_.role);
+  message.mutable_welcome()->set_host_ns(shared_.NowNs());
+  message.mutable_welcome()->set_wall_time_ns(clock::WallNs());
+  Send(message);
+  ArmTimer(shared_.options.ping_interval_s);
+}
+
+void Session::GiveWay(const std::string& message) {
+  if (guessing()) return AnswerGuess();
+  Refused(v1::Refused::REASON_TOO_MANY_SESSIONS, message);
+}
+
+void Session::AnswerGuess() { Refused(v1::Refused::REASON_TOKEN, guess_answer_); }
+
+/// The part of Session that says what slows it, and what all sessions share.
+std::int64_t Shared::NowNs() const {
+  return options.now_ns ? options.now_ns() : clock::MonotonicNs();
+}
+
+void Shared::SayOverload(const OverloadLine& line) {
+  if (handlers.on_overload && overload_lines.Take(NowNs())) handlers.on_overload(line);
+}
+
+void Shared::SayDenied(const std::string& host, Lack lack, const std::string& why) {
+  ++statistics.denied;
+  TokenBucket& lines = denied_lines.try_emplace(lack, 0.1, 1).first->second;
+  if (!handlers.on_overload || !lines.Take(NowNs())) return;
+  handlers.on_overload({"refused a client from " + host + ": " + why + " (" +
+                        std::to_string(statistics.denied) + " since start)"});
+}
+
+void Shared::SayRefused(v1::Refused::Reason reason, const Peer& peer, const std::string& why) {
+  TokenBucket& lines = refused_lines.try_emplace(reason, 0.1, 1).first->second;
+  if (!handlers.on_overload || !lines.Take(NowNs())) return;
+  const std::string who = peer.known ? "of user " + std::to_string(peer.user) : "from " + peer.host;
+  handlers.on_overload({"refused a client " + who + ": " + why + " (" +
+                        std::to_string(statistics.refused) + " since start)"});
+}
+
+void Session::SayEnded(const std::string& why) {
+  if (!shared_.handlers.on_overload || !shared_.ended_lines.Take(shared_.NowNs())) return;
+  shared_.handlers.on_overload(
+      {"session " + std::to_string(info_.session) + " (" + info_.client_name + ") is ended: " + why,
+       info_.session});
+}
+
+void Session::OnSlowed(double wait_s) {
+  ++record_.slowed;
+  record_.slowed_until_ns = shared_.NowNs() + SecondsToNanoseconds(wait_s);
+  ++shared_.statistics.slowed;
+  const std::string name = info_.client_name.empty() ? "" : " (" + info_.client_name + ")";
+  shared_.SayOverload({"session " + std::to_string(info_.session) + name + " sends more than " +
+                           std::to_string(static_cast<int>(messages_per_s_)) +
+                           " messages a second and is slowed",
+                       info_.session});
+  if (!welcomed() || !slowed_notices_.Take(shared_.NowNs())) return;
+  Notify(v1::Notice::KIND_SLOWED,
+         "this client exceeds the server's rate limit; its messages are delayed", record_.slowed);
+}
+
+bool Session::SlowedLately(std::int64_t now_ns) const {
+  const std::int64_t until_ns = record_.slowed_until_ns;
+  return until_ns != 0 && now_ns - until_ns < kNanosecondsPerSecond;
+}
+
+void Session::Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count) {
+  if (!welcomed() || !connection_.open()) return;
+  v1::Envelope message;
+  message.mutable_notice()->set_kind(kind);
+  message.mutable_notice()->set_text(text);
+  message.mutable_notice()->set_count(count);
+  Send(message);
+}
+
+/// The half of Session that streams: subscription, live ticks, resume and refill.
+namespace {
+
+/// Unanswered requests to refill; each is a few bytes, but there must be an end.
+constexpr std::size_t kMaxRefills = 16;
+/// In messages: a snapshot is made and sent for it.
+constexpr double kSubscribeCost = 20;
+/// In messages, of a tick out of the ring: the whole ring of 3000 is within a session's burst.
+constexpr double kReplayCost = 0.02;
+constexpr int kReplayTicksInATurn = 32;
+
+}  // namespace
+
+std::uint64_t Session::FirstSequence(const v1::Subscribe& wish) const {
+  const std::uint64_t next = shared_.publication.last_sequence() + 1;
+  const bool resumes = wish.has_from_sequence() && wish.from_epoch() == shared_.epoch;
+  if (!resumes || wish.from_sequence() >= next) return next;
+  const TickRing& ring = shared_.publication.ring();
+  const std::uint64_t oldest = ring.empty() ? next : ring.first();
+  return std::max(wish.from_sequence(), oldest);
+}
+
+void Session::OnSubscribe(const v1::Subscribe& wish) {
+  connection_.Charge(kSubscribeCost - 1);
+  EffectiveSubscription settled = Settle(wish, shared_.options);
+  const std::uint64_t first = FirstSequence(wish);
+  const std::uint64_t next = shared_.publication.last_sequence() + 1;
+  settled.answer.set_first_sequence(first);
+  v1::Envelope message;
+  *message.mutable_subscribed() = settled.answer;
+  Send(message);
+
+  record_.ticks_dropped += queue_.dropped_ticks();
+  subscription_ = std::move(settled.subscription);
+  queue_ = TickQueue(subscription_.rule, subscription_.queue_ticks, shared_.publication.retained());
+  decimator_.emplace(subscription_.max_hz, SecondsToNanoseconds(1 / shared_.options.tick_rate_hz));
+  replay_.refills.clear();
+  replay_.catch_up = first < next ? first : 0;
+  SendSnapshot(first - 1);
+  if (wish.has_from_sequence()) {
+    if (wish.from_epoch() != shared_.epoch) {
+      SendGap(wish.from_sequence(), 0, v1::Gap::REASON_NEW_EPOCH);
+    } else if (wish.from_sequence() != 0 && wish.from_sequence() < first) {
+      SendGap(wish.from_sequence(), first - 1, v1::Gap::REASON_RING_PASSED);
+    }
+  }
+  phase_ = Phase::kSubscribed;
+  connection_.Wake();
+}
+
+void Session::SendSnapshot(std::uint64_t sequence) {
+  const SharedTick tick = shared_.publication.Snapshot(sequence, shared_.NowNs());
+  std::string fields;
+  for (const Slice& slice : tick->slices) {
+    if (subscription_.fields.count(slice.field) == 0) continue;
+    fields.append(tick->bytes, slice.begin, slice.size);
+  }
+  TickHead head;
+  head.epoch = shared_.epoch;
+  head.sequence = tick->sequence;
+  head.host_ns = tick->host_ns;
+  head.snapshot = true;
+  char bytes[kMaxTickHeadBytes];
+  const std::size_t head_bytes = EncodeTickHead(head, fields.size(), bytes);
+  fields.insert(0, bytes + kLengthBytes, head_bytes - kLengthBytes);
+  SendPayload(fields);
+}
+
+void Session::SendGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason) {
+  v1::Envelope message;
+  message.mutable_gap()->set_from_sequence(from);
+  message.mutable_gap()->set_to_sequence(to);
+  message.mutable_gap()->set_reason(reason);
+  Send(message);
+}
+
+void Session::OnRefill(const v1::Refill& wish) {
+  if (phase_ != Phase::kSubscribed) return BadMessage("Refill came before Subscribe");
+  const std::uint64_t last = std::min(wish.to_sequence(), shared_.publication.last_sequence());
+  const std::uint64_t first = std::max<std::uint64_t>(wish.from_sequence(), 1);
+  if (first > last) return SayNothingToRefill(wish);
+  if (replay_.refills.size() >= kMaxRefills) {
+    return End("this client asks for missing ticks faster than it reads them: " +
+               std::to_string(kMaxRefills) +
+               " Refills wait; send the next one after the ticks of "
+               "an earlier one");
+  }
+  replay_.refills.push_back({first, last});
+  JoinReplays();
+}
+
+void Session::SayNothingToRefill(const v1::Refill& wish) {
+  const std::string from = std::to_string(wish.from_sequence());
+  Notify(v1::Notice::KIND_NOTHING_TO_REFILL,
+         wish.from_sequence() > wish.to_sequence()
+             ? "Refill: from_sequence " + from + " is above to_sequence " +
+                   std::to_string(wish.to_sequence())
+             : "Refill: tick " + from + " is not published yet; the newest is " +
+                   std::to_string(shared_.publication.last_sequence()),
+         wish.from_sequence());
+}
+
+void Session::Offer(const SharedTick& tick) {
+  if (phase_ != Phase::kSubscribed || !connection_.open()) return;
+  if (replay_.catch_up != 0) return JoinReplays();  // It will come out of the ring.
+  if (!Takes(*tick)) {
+    queue_.Skip(tick);
+    return;
+  }
+  const std::uint64_t dropped_before = queue_.dropped_ticks();
+  if (!queue_.Push(tick)) {
+    return End("this client reads too slowly for the policy reliable: " +
+               std::to_string(subscription_.queue_ticks) +
+               " ticks wait; resume from the last sequence received, or use drop_oldest");
+  }
+  shared_.statistics.ticks_dropped += queue_.dropped_ticks() - dropped_before;
+  connection_.Wake();
+}
+
+/// For max_hz; the one behind a hole always comes, since the Gap comes with it.
+bool Session::Takes(const Tick& tick) {
+  const bool due = decimator_->Take(tick.host_ns);
+  return due || tick.missing_from != 0;
+}
+
+TickHead Session::Head(bool refilled) const {
+  TickHead head;
+  head.epoch = shared_.epoch;
+  head.refilled = refilled;
+  return head;
+}
+
+void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason,
+                     WriteBatch& batch) {
+  v1::Envelope message;
+  message.mutable_gap()->set_from_sequence(from);
+  message.mutable_gap()->set_to_sequence(to);
+  message.mutable_gap()->set_reason(reason);
+  batch.AddOwned(Frame(message.SerializeAsString()));
+}
+
+/// Of the hole in front of a tick, what is not before `from`: the rest is known already.
+void Session::AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch) {
+  from = std::max(from, tick.missing_from);
+  if (tick.missing_from == 0 || from >= tick.sequence) return;
+  AddGap(from, tick.sequence - 1, v1::Gap::REASON_UNSPECIFIED, batch);
+}
+
+void Session::Fill(WriteBatch& batch) {
+  // A tick and a Gap in front of it.
+  while (batch.free_buffers() > kBuffersPerTick) {
+    if (FillLive(batch) || FillFromRing(batch)) continue;
+    if (replay_.wanted()) return JoinReplays();
+    if (!record_.drain_reason.empty() && batch.empty()) EndLater();
+    return;
+  }
+}
+
+/// In turns with all other sessions, since the ring has far more ticks than the present.
+void Session::JoinReplays() {
+  if (replay_.allowance > 0 || std::exchange(replay_.in_line, true)) return;
+  shared_.replays->Add([weak = weak_from_this()] {
+    const auto self = weak.lock();
+    if (!self) return false;
+    self->replay_.in_line = false;
+    self->replay_.allowance = kReplayTicksInATurn;
+    self->connection_.Wake();
+    return false;
+  });
+}
+
+bool Session::FillFromRing(WriteBatch& batch) {
+  if (replay_.allowance == 0 || !replay_.wanted()) return false;
+  --replay_.allowance;
+  return FillCatchUp(batch) || FillRefill(batch);
+}
+
+void Session::Drain(const std::string& reason) {
+  if (phase_ != Phase::kSubscribed || !connection_.open()) return End(reason);
+  record_.drain_reason = reason;
+  connection_.Wake();
+}
+
+/// Not from within the filling of a batch.
+void Session::EndLater() {
+  boost::asio::post(connection_.executor(), [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->End(self->record_.drain_reason);
+  });
+}
+
+bool Session::FillLive(WriteBatch& batch) {
+  TickQueue::Entry entry;
+  if (!queue_.Pop(entry)) return false;
+  const std::uint64_t missing = entry.tick->missing_from;
+  if (const auto dropped = queue_.TakeDropped()) {
+    const std::uint64_t to = missing != 0 ? entry.tick->sequence - 1 : dropped->to;
+    AddGap(dropped->from, to, v1::Gap::REASON_QUEUE_FULL, batch);
+  } else {
+    AddMissing(*entry.tick, 0, batch);
+  }
+  AddTick(entry, subscription_, Head(false), batch);
+  ++record_.ticks_sent;
+  return true;
+}
+
+bool Session::FillCatchUp(WriteBatch& batch) {
+  if (replay_.catch_up == 0) return false;
+  const TickRing& ring = shared_.publication.ring();
+  if (replay_.catch_up > ring.last()) {
+    replay_.catch_up = 0;
+    return false;
+  }
+  if (replay_.catch_up < ring.first()) {  // It read so slowly that the ring went past it.
+    AddGap(replay_.catch_up, ring.first() - 1, v1::Gap::REASON_RING_PASSED, batch);
+    replay_.catch_up = ring.first();
+    return true;
+  }
+  const SharedTick& tick = *ring.AtOrAfter(replay_.catch_up);
+  const std::uint64_t from = std::exchange(replay_.catch_up, tick->sequence + 1);
+  connection_.Charge(kReplayCost);
+  if (Takes(*tick)) {
+    AddMissing(*tick, from, batch);
+    AddTick({tick, {}}, subscription_, Head(true), batch);
+    ++record_.ticks_sent;
+  } else {
+    queue_.Skip(tick);
+  }
+  return true;
+}
+
+bool Session::FillRefill(WriteBatch& batch) {
+  if (replay_.refills.empty()) return false;
+  Range& range = replay_.refills.front();
+  const TickRing& ring = shared_.publication.ring();
+  if (range.next < ring.first()) {
+    const std::uint64_t gone = std::min(range.last, ring.first() - 1);
+    AddGap(range.next, gone, v1::Gap::REASON_RING_PASSED, batch);
+    range.next = gone + 1;
+  } else {
+    const SharedTick* tick = ring.AtOrAfter(range.next);
+    range.next = range.last + 1;
+    if (tick != nullptr && (*tick)->sequence <= range.last) {
+      connection_.Charge(kReplayCost);
+      AddTick({*tick, {}}, subscription_, Head(true), batch);
+      ++record_.ticks_sent;
+      range.next = (*tick)->sequence + 1;
+    }
+  }
+  if (range.next > range.last) replay_.refills.pop_front();
+  return true;
+}
+
+namespace {
+
+constexpr int kMostListed = 500;  // Sessions in an answer: about 100 kB.
+constexpr std::size_t kMostReasonBytes = 200;
+/// The right token of a host that guesses must get in, so there may be more of these.
+constexpr std::int64_t kMostLingeringGuesses = 4 * SessionTable::kMostLingering;
+
+}  // namespace
+
+std::int64_t SessionTable::lingering() const {
+  return std::count_if(sessions_.begin(), sessions_.end(),
+                       [](const auto& one) { return one->refused(); });
+}
+
+std::shared_ptr<Session> SessionTable::Remove(const Session& session) {
+  const auto found = std::find_if(sessions_.begin(), sessions_.end(),
+                                  [&](const auto& one) { return one.get() == &session; });
+  std::shared_ptr<Session> removed = *found;
+  sessions_.erase(found);
+  return removed;
+}
+
+std::size_t SessionTable::SetKeys(const AccessKeys& keys) {
+  AccessKeys& own = shared_.options;
+  std::vector<std::pair<std::shared_ptr<Session>, std::string>> revoked;
+  for (const auto& session : sessions_) {
+    if (!session->live()) continue;
+    auto why = WhyRevoked(own, keys, session->admitted());
+    if (!why.empty()) revoked.emplace_back(session, std::move(why));
+  }
+  if (keys.token != own.token || keys.view_token != own.view_token) {
+    shared_.admission.token = TokenGuard(keys.token, keys.view_token);
+  }
+  own = keys;
+  for (const auto& [session, why] : revoked) session->End(why);
+  return revoked.size();
+}
+
+v1::CommandResult SessionTable::CarryOut(const SessionInfo& who, const v1::Command& command) {
+  return command.has_end_sessions() ? End(who, command.end_sessions())
+                                    : List(who, command.list_sessions().after());
+}
+
+SessionCounts SessionTable::CountsFor(const Session& one) const {
+  SessionCounts taken;
+  for (const auto& other : sessions_) {
+    if (other->refused()) continue;
+    const Peer &a = one.peer(), &b = other->peer();
+    const bool entering = other->secured() && !other->welcomed();
+    ++taken.all;
+    taken.of_user += a.known == b.known && a.user == b.user ? 1 : 0;
+    taken.entering_of_host += one.secured() && entering && a.host == b.host ? 1 : 0;
+  }
+  return taken;
+}
+
+/// The oldest guess of the host, or of any, has its answer now. False without one.
+bool SessionTable::EndAGuess(const std::optional<std::string>& host) {
+  const auto guess = std::find_if(sessions_.begin(), sessions_.end(), [&](const auto& one) {
+    return one->guessing() && (!host || one->peer().host == *host);
+  });
+  if (guess == sessions_.end() || lingering() >= kMostLingeringGuesses) return false;
+  (*guess)->AnswerGuess();
+  return true;
+}
+
+/// Who came last may be quick where others stall: the oldest of the host gives way.
+void SessionTable::BoundEntering(const Session& session) {
+  const SessionLimits& limits = shared_.options.sessions;
+  const std::string& host = session.peer().host;
+  if (CountsFor(session).entering_of_host < limits.max_entering_per_host) return;
+  if (lingering() >= kMostLingering) return;  // Each lingers for up to a second.
+  const auto oldest = std::find_if(sessions_.begin(), sessions_.end(), [&](const auto& one) {
+    return one->secured() && !one->welcomed() && !one->refused() && one->peer().host == host;
+  });
+  (*oldest)->GiveWay(shared_.options.server_id + " has " +
+                     WhyNoPlace(limits, session.peer(), geteuid(), CountsFor(session)) +
+                     "; end one or try again later");
+}
+
+std::string SessionTable::WhyFull(const Session& session) {
+  const std::string& host = session.peer().host;
+  const auto why = [&] {
+    return WhyNoPlace(shared_.options.sessions, session.peer(), geteuid(), CountsFor(session));
+  };
+  BoundGuesses(host);
+  BoundEntering(session);
+  std::string full = why();
+  if (!full.empty() && (EndAGuess(host) || EndAGuess(std::nullopt))) full = why();
+  return full;
+}
+
+/// At most so many guesses of one host wait for their answers.
+void SessionTable::BoundGuesses(const std::string& host) {
+  const auto waiting = std::count_if(sessions_.begin(), sessions_.end(), [&](const auto& one) {
+    return one->guessing() && one->peer().host == host;
+  });
+  if (waiting >= shared_.options.sessions.max_entering_per_host) EndAGuess(host);
+}
+
+v1::CommandResult SessionTable::List(const SessionInfo& who, std::uint64_t after) const {
+  v1::CommandResult result;
+  result.set_ok(true);
+  for (const auto& session : sessions_) {  // In the order of their numbers.
+    if (!session->live() || session->info().session <= after) continue;
+    if (result.sessions_size() == kMostListed) {
+      result.set_more_sessions(true);
+      break;
+    }
+    *result.add_sessions() = session->Describe();
+    const bool own = session->info().session == who.session;
+    result.mutable_sessions()->rbegin()->set_own(own);
+  }
+  return result;
+}
+
+v1::CommandResult SessionTable::End(const SessionInfo& who, const v1::EndSessions& wish) {
+  v1::CommandResult result;
+  const std::set<std::uint64_t> numbers(wish.sessions().begin(), wish.sessions().end());
+  if (who.role != v1::ROLE_ADMIN) {
+    result.set_message(
+        "end_sessions needs the role admin: connect over the server's Unix socket as its user or "
+        "root, and request admin in Hello");
+  } else if (numbers.empty() || wish.sessions_size() > kMostListed) {
+    result.set_message("end_sessions names 1 to " + std::to_string(kMostListed) + " sessions");
+  } else if (numbers.contains(who.session)) {
+    result.set_message("end_sessions: session " + std::to_string(who.session) +
+                       " is the one that asks; it ends when its client does");
+  } else if (wish.reason().size() > kMostReasonBytes) {
+    result.set_message("end_sessions: reason has at most " + std::to_string(kMostReasonBytes) +
+                       " bytes");
+  } else {
+    result.set_ok(true);
+    const std::string reason =
+        "ended by an administrator" + (wish.reason().empty() ? "" : ": " + wish.reason());
+    for (const auto& session : std::vector(sessions_)) {
+      if (!session->live() || !numbers.contains(session->info().session)) continue;
+      *result.add_sessions() = session->Describe();
+      session->End(reason);
+    }
+  }
+  return result;
+}
+
+void ReserveDescriptors(std::size_t count) {
+  rlimit limit{};
+  if (count == 0 || getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == 0) return;
+  const int any = open("/", O_PATH | O_CLOEXEC);
+  if (any < 0) return;
+  // The table never shrinks again.
+  const auto last = static_cast<int>(std::min<rlim_t>(count, limit.rlim_cur) - 1);
+  const int high = fcntl(any, F_DUPFD_CLOEXEC, last);
+  if (high >= 0) close(high);
+  close(any);
+}
+
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+/// The value of a field, or of the `index`-th of a repeated one.
+class Value {
+ public:
+  Value(const Message& message, const FieldDescriptor* field, int index)
+      : message_(message), with_(*message.GetReflection()), field_(field), index_(index) {}
+
+  const Message& message() const {
+    return repeated() ? with_.GetRepeatedMessage(message_, field_, index_)
+                      : with_.GetMessage(message_, field_);
+  }
+  bool printable() const {
+    return text::IsPrintable(repeated() ? with_.GetRepeatedString(message_, field_, index_)
+                                        : with_.GetString(message_, field_));
+  }
+  bool finite_double() const {
+    return std::isfinite(repeated() ? with_.GetRepeatedDouble(message_, field_, index_)
+                                    : with_.GetDouble(message_, field_));
+  }
+  bool finite_float() const {
+    return std::isfinite(repeated() ? with_.GetRepeatedFloat(message_, field_, index_)
+                                    : with_.GetFloat(message_, field_));
+  }
+
+ private:
+  bool repeated() const { return field_->is_repeated(); }
+
+  const Message& message_;
+  const google::protobuf::Reflection& with_;
+  const FieldDescriptor* field_;
+  int index_;
+};
+
+/// What is wrong with the first field that is; empty: nothing. `within` names what `message` is.
+std::string Problem(const Message& message, const std::string& within) {
+  std::vector<const FieldDescriptor*> fields;
+  message.GetReflection()->ListFields(message, &fields);
+  for (const FieldDescriptor* field : fields) {
+    const std::string name = within + std::string(field->name());
+    const int count = field->is_repeated() ? message.GetReflection()->FieldSize(message, field) : 1;
+    for (int i = 0; i < count; ++i) {
+      const Value value(message, field, i);
+      const auto type = field->type();
+      if (type == FieldDescriptor::TYPE_MESSAGE) {
+        const std::string inner = Problem(value.message(), name + ".");
+        if (!inner.empty()) return inner;
+      } else if (type == FieldDescriptor::TYPE_STRING && !value.printable()) {
+        return name + " has control characters, which a text must not have";
+      } else if ((type == FieldDescriptor::TYPE_DOUBLE && !value.finite_double()) ||
+                 (type == FieldDescriptor::TYPE_FLOAT && !value.finite_float())) {
+        return name + " is not a finite number";
+      }
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+Result<void> CheckContent(const v1::Command& command) {
+  if (command.has_set_interface()) {
+    v1::SetInterface without_table = command.set_interface();
+    without_table.clear_table();
+    const std::string problem = Problem(without_table, "set_interface.");
+    return problem.empty() ? Result<void>() : UsageError(problem);
+  }
+  const std::string problem = Problem(command, "");
+  return problem.empty() ? Result<void>() : UsageError(problem);
 }
 
 }  // namespace footing::transport

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -9,22 +10,61 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "common/runtime/timer.h"
+#include "common/base/result.h"
 #include "common/net/admission.h"
-#include "common/net/answers.h"
-#include "common/net/decimator.h"
-#include "common/net/framed_connection.h"
-#include "common/net/handshake.h"
-#include "common/net/peer.h"
-#include "common/net/publication.h"
+#include "common/net/client.h"
+#include "common/net/clock_offset.h"
+#include "common/net/framing.h"
+#include "common/net/limits.h"
 #include "common/net/server.h"
-#include "common/net/session_record.h"
-#include "common/net/tick_queue.h"
-#include "common/net/token_bucket.h"
 #include "common/net/turn_queue.h"
+#include "common/runtime/timer.h"
+#include "footing/v1/command.pb.h"
+#include "footing/v1/session.pb.h"
 
 namespace footing::transport {
+
+/// Picks the ticks that a session with max_hz gets: on the average at most that many a second, as
+/// evenly as the ticks allow. A plain value.
+class Decimator {
+ public:
+  /// `max_hz` 0 takes every tick. `tick_ns` is the nominal interval between ticks.
+  Decimator(double max_hz, std::int64_t tick_ns);
+
+  /// Whether the tick of this instant goes out. An instant before the last one resets it.
+  bool Take(std::int64_t host_ns);
+
+ private:
+  std::int64_t interval_ns_;
+  std::int64_t slack_ns_;  ///< Half a tick: a tick that comes a little early is as good.
+  std::int64_t due_ns_ = INT64_MIN;
+  std::int64_t last_ns_ = INT64_MIN;
+};
+
+/// What a session counts and measures of itself. A plain value.
+struct SessionRecord {
+  /// The server's own ping, once a second: it shows that the client lives, and its clock.
+  struct OwnPing {
+    std::uint64_t id = 0;
+    std::int64_t sent_ns = 0;
+    bool unanswered = false;
+  };
+
+  std::int64_t began_ns = 0;
+  std::uint64_t slowed = 0;          ///< Times that it had to wait for its budget.
+  std::int64_t slowed_until_ns = 0;  ///< The end of the last of these times; 0: it never had to.
+  std::uint64_t ticks_sent = 0;      ///< Handed to the socket.
+  std::uint64_t ticks_dropped = 0;   ///< Of queues of earlier subscriptions.
+  std::string drain_reason;          ///< The reason for which it is drained; empty: it is not.
+  OwnPing ping;
+  ClockOffsetEstimator clock;  ///< Of the client's clock.
+
+  /// The answer to `ping`; any other one says only that the client lives. Stamps without sense, as
+  /// those of a client that sends none, are ignored.
+  void TakePong(const v1::Pong& pong, std::int64_t arrived_ns);
+};
 
 inline constexpr TurnPace kReplayPace = {
     .share = 0.2, .longest_rest_ns = 10'000'000, .rests_when_empty = true};
@@ -193,5 +233,52 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<Decimator> decimator_;
   Replay replay_;
 };
+
+/// All sessions of one server, in the order of their numbers: which have a place, and which an
+/// administrator or a reload ends. Those that are being refused are among them.
+class SessionTable {
+ public:
+  static constexpr std::int64_t kMostLingering = 64;  ///< Sessions that are being refused.
+
+  explicit SessionTable(Shared& shared) : shared_(shared) {}
+
+  const std::vector<std::shared_ptr<Session>>& all() const { return sessions_; }
+  std::int64_t lingering() const;
+
+  /// Why there is no place for one that is not in the table yet; empty when there is one. Makes
+  /// place for it: the oldest connection of its host that has not said who it is gives way, and so
+  /// does the oldest guess of a token.
+  std::string WhyFull(const Session& session);
+  void Add(const std::shared_ptr<Session>& session) { sessions_.push_back(session); }
+  std::shared_ptr<Session> Remove(const Session& session);
+
+  /// Other keys: ends the sessions that came in by what is gone, and returns how many.
+  std::size_t SetKeys(const AccessKeys& keys);
+
+  /// list_sessions and end_sessions.
+  v1::CommandResult CarryOut(const SessionInfo& who, const v1::Command& command);
+
+ private:
+  SessionCounts CountsFor(const Session& one) const;
+  bool EndAGuess(const std::optional<std::string>& host);
+  void BoundGuesses(const std::string& host);
+  void BoundEntering(const Session& session);
+  v1::CommandResult List(const SessionInfo& who, std::uint64_t after) const;
+  v1::CommandResult End(const SessionInfo& who, const v1::EndSessions& wish);
+
+  Shared& shared_;
+  std::vector<std::shared_ptr<Session>> sessions_;
+};
+
+/// Enlarges this process's table to hold `count` descriptors, as far as its limit of open files
+/// permits. The kernel doubles the table when a descriptor does not fit, and where a process has
+/// threads it then waits until every processor has passed a quiet point: the thread that accepts
+/// the 257th connection would be stopped for 6 to 17 ms.
+void ReserveDescriptors(std::size_t count);
+
+/// What holds for every command: its texts are printable (text::IsPrintable), since they go to
+/// screens, logs and files, and its numbers are finite. A usage error names the field. A mapping
+/// table (SetInterface.table) is a document: its reader checks it.
+Result<void> CheckContent(const v1::Command& command);
 
 }  // namespace footing::transport

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/generic/stream_protocol.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/post.hpp>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -11,10 +7,16 @@
 #include <string>
 #include <utility>
 
+#include <sys/types.h>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+
 #include "common/base/result.h"
-#include "common/runtime/timer.h"
-#include "common/net/channel.h"
 #include "common/net/address.h"
+#include "common/net/tls_channel.h"
+#include "common/runtime/timer.h"
 
 /// One socket type for Unix, TCP and TLS, so that everything above shares its code.
 namespace footing::transport {
@@ -138,5 +140,20 @@ std::string MessageOf(const boost::system::error_code& error);
 
 /// Why a connection is over after this error, perhaps within a frame.
 std::string CloseReason(const boost::system::error_code& error, bool inside_frame);
+
+/// The file behind a Unix socket: whose it is, and when it may go.
+/// Clears the way for a server at `path` and calls `bind` there, all under a lock on the folder, so
+/// that two servers started at once cannot take each other's file. Only a socket that nobody
+/// answers on is removed. `address_text` is for the error line.
+Result<void> BindWhereNobodyListens(const std::string& path, const std::string& address_text,
+                                    const std::function<Result<void>()>& bind);
+
+/// Which file it is, so that at the end only the own one is removed.
+struct FileIdentity {
+  dev_t device = 0;
+  ino_t inode = 0;
+};
+FileIdentity IdentityOf(const std::string& path);
+void RemoveIfStill(const std::string& path, const FileIdentity& identity);
 
 }  // namespace footing::transport

@@ -1,9 +1,10 @@
 #include "common/net/turn_queue.h"
 
 #include <algorithm>
-#include <boost/asio/post.hpp>
 #include <chrono>
 #include <utility>
+
+#include <boost/asio/post.hpp>
 
 #include "common/runtime/clock.h"
 

@@ -1,11 +1,16 @@
 #pragma once
 
-#include <boost/asio/any_io_executor.hpp>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
+#include <utility>
 
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/post.hpp>
+
+#include "common/net/admission.h"
+#include "common/net/socket.h"
 #include "common/runtime/timer.h"
 
 namespace footing::transport {
@@ -51,6 +56,19 @@ class TurnQueue : public std::enable_shared_from_this<TurnQueue> {
   timer::Timer rest_;
   std::int64_t rested_ns_ = 0;   ///< The end of the newest rest.
   std::weak_ptr<Line> waiting_;  ///< Held by what the loop will call next, or is in now.
+};
+
+/// What the connections of one thread share: empty batches, and the line in which each gets a small
+/// piece of its work done. Without the line a connection does its work as it comes.
+struct SharedLoop {
+  std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>();
+  std::shared_ptr<TurnQueue> turns;
+
+  /// Calls `work` later, when its turn comes.
+  void InTurn(const Socket::executor_type& executor, std::function<void()> work) const {
+    if (!turns) return boost::asio::post(executor, std::move(work));
+    turns->Add([work = std::move(work)] { return work(), false; });
+  }
 };
 
 }  // namespace footing::transport

@@ -4,9 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "common/recording/character_tables.h"
-#include "common/recording/device_tables.h"
-#include "common/recording/run_clock.h"
+#include "common/recording/bids_tables.h"
 
 namespace footing::bids {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "common/recording/tables.h"
-#include "common/recording/recorded_session.h"
 #include "common/base/result.h"
+#include "common/recording/bids_tables.h"
+#include "common/recording/recorded_session.h"
 
 namespace footing::bids {
 

@@ -5,9 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "common/recording/records.h"
-#include "common/recording/mapped_file.h"
 #include "common/base/result.h"
+#include "common/recording/mcap_records.h"
+#include "common/recording/recording_writer.h"
+#include "footing/v1/device.pb.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::recording {
@@ -68,5 +69,22 @@ Result<v1::Tick> ReadTick(const RecordedTick& recorded,
 /// Every tick of a server, in order.
 Result<std::vector<v1::Tick>> ReadTicks(const RecordedServer& server,
                                         const std::vector<std::uint32_t>& fields = {});
+
+/// How a recorded device presented itself to its host.
+struct RecordedIdentity {
+  std::uint32_t bus = 0;  ///< As in the kernel's input.h.
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+  std::string name;
+  std::string serial;
+};
+
+/// As the status says; recordings of before 2026-11 say no bus, vendor and product: what devices of
+/// its kind and name have then.
+RecordedIdentity IdentityOf(const v1::DeviceStatus& status);
+
+/// A feature report. Recordings of before 2026-11 do not flag those of a PS Move, which have ids of
+/// their own.
+bool IsFeature(const v1::RawReport& report, const v1::DeviceStatus& status);
 
 }  // namespace footing::recording

@@ -4,10 +4,8 @@
 #include <map>
 #include <system_error>
 
-#include "common/recording/writer.h"
-#include "common/recording/mapped_file.h"
-#include "common/recording/output_file.h"
-#include "common/recording/schema.h"
+#include "common/recording/mcap_writer.h"
+#include "common/recording/recording_writer.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::recording {

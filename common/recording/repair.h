@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "common/recording/walk.h"
 #include "common/base/result.h"
+#include "common/recording/mcap_reader.h"
 
 namespace footing::recording {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "common/recording/decode.h"
-#include "common/recording/seek.h"
-#include "common/base/instant.h"
+#include "common/base/units.h"
+#include "common/recording/mcap_reader.h"
+#include "common/recording/mcap_records.h"
 
 namespace footing::playback {
 namespace {

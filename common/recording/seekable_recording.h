@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/recording/summary.h"
-#include "common/recording/recorded_server.h"
-#include "common/recording/mapped_file.h"
 #include "common/base/result.h"
+#include "common/recording/mcap_reader.h"
+#include "common/recording/recording_server.h"
+#include "common/recording/recording_writer.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::playback {

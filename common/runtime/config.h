@@ -3,10 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "common/base/result.h"
 
@@ -92,5 +93,16 @@ struct Change {
 
 /// Between two configs with the same keys, in the order bound.
 std::vector<Change> Differences(const Binder& before, const Binder& after);
+
+/// The line, from 1, on which each key of the outermost object of a JSON text with comments stands
+/// (the last one of a key that stands twice). Of a text that is not JSON those before the fault.
+std::map<std::string, int> LinesOfKeys(const std::string& text);
+
+/// What a program says that has read its config again: `before` held until now, `after` holds from
+/// now on, and `wanted` was read. `files` are settings whose files have another content. One line,
+/// and another one where what was read needs a restart.
+std::vector<std::string> DescribeReload(const Binder& before, const Binder& after,
+                                        const Binder& wanted,
+                                        const std::vector<std::string>& files);
 
 }  // namespace footing::config

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/runtime/fields.h"
+#include "common/runtime/log.h"
 
 namespace footing::log {
 

@@ -1,14 +1,13 @@
 #include "common/runtime/log.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-#include <syslog.h>
-
 #include <cerrno>
 #include <memory>
 #include <utility>
 
-#include "common/runtime/fields.h"
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <syslog.h>
+
 #include "common/runtime/journal.h"
 
 namespace footing::log {

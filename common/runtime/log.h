@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 /// Log lines to standard error. Only at the edge that decides, never on the simulation thread and
@@ -13,5 +14,17 @@ void Start(const std::string& program, bool quiet);
 void Info(const std::string& line);
 void Warning(const std::string& line);
 void Error(const std::string& line);
+
+/// What a line is about, as fields of the journal: FOOTING_DEVICE, FOOTING_SESSION and
+/// FOOTING_CHANNEL. Empty or 0: not about one.
+struct Fields {
+  std::string device;  ///< Its serial.
+  std::uint64_t session = 0;
+  std::string channel;
+};
+
+enum class Level { kInfo, kWarning, kError };
+
+void Write(Level level, const std::string& line, const Fields& fields);
 
 }  // namespace footing::log

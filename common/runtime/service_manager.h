@@ -1,10 +1,12 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <functional>
 #include <string>
 #include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
 
 #include "common/runtime/timer.h"
 
@@ -37,6 +39,34 @@ class Notifier {
   std::function<std::string()> what_is_stuck_;
   std::string status_;
   std::string stuck_;  ///< As it was said.
+};
+
+/// SIGINT and SIGTERM end a service in order: its clients are served to the end, for at most 2 s or
+/// until a second signal. SIGHUP lets it read its config again, but for the one that comes with the
+/// end of its terminal, which ends it, too. Started with nohup it outlives its terminal.
+class ServiceSignals {
+ public:
+  struct Handlers {
+    /// Ends the service's work; `done` when its clients have gone.
+    std::function<void(int signal, std::function<void()> done)> stop;
+    std::function<void()> reload;
+  };
+
+  /// The io_context is stopped at the end.
+  ServiceSignals(boost::asio::io_context& io, Handlers handlers);
+  ServiceSignals(const ServiceSignals&) = delete;
+  ServiceSignals& operator=(const ServiceSignals&) = delete;
+
+ private:
+  void Wait();
+  void OnSignal(int signal);
+
+  boost::asio::io_context& io_;
+  boost::asio::signal_set signals_;
+  timer::Timer patience_;
+  Handlers handlers_;
+  const bool ends_with_terminal_;
+  bool stopping_ = false;
 };
 
 }  // namespace footing::service_manager

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "common/base/text.h"
 #include "common/runtime/config.h"
-#include "common/runtime/data_file.h"
-#include "common/base/number.h"
+#include "common/runtime/files.h"
 
 namespace footing::subject {
 namespace {

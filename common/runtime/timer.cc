@@ -1,13 +1,17 @@
 #include "common/runtime/timer.h"
 
 #include <algorithm>
-#include <boost/asio/error.hpp>
-#include <boost/asio/execution/outstanding_work.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/prefer.hpp>
+#include <chrono>
 #include <map>
 #include <utility>
 
+#include <boost/asio/error.hpp>
+#include <boost/asio/execution/outstanding_work.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/prefer.hpp>
+
+#include "common/base/units.h"
 #include "common/runtime/clock.h"
 
 namespace footing::timer {
@@ -106,6 +110,18 @@ void RunOneUntil(asio::io_context& io, TimePoint end) {
     if (io.stopped()) return;
     if (waits.PostDue()) continue;
     follower->Listen(std::min(end, waits.Next()).time_since_epoch().count());
+  }
+}
+
+Waited RunUntil(boost::asio::io_context& io, const std::function<bool()>& condition,
+                double within_s, const std::function<bool()>& interrupted) {
+  const auto work = boost::asio::make_work_guard(io);  // Or it would stop, and not wait.
+  const TimePoint end = Now() + std::chrono::nanoseconds(SecondsToNanoseconds(within_s));
+  for (;;) {
+    if (interrupted()) return Waited::kInterrupted;
+    if (condition && condition()) return Waited::kDone;
+    if (Now() >= end) return Waited::kTimeUp;
+    RunOneUntil(io, end);
   }
 }
 

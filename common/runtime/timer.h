@@ -1,14 +1,15 @@
 #pragma once
 
-#include <boost/asio/any_io_executor.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
 
-/// Timers and event loops on the clock of common/clock: the host's, or that of the timekeeper that
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+/// Timers and event loops on the clock of common/runtime: the host's, or that of the timekeeper that
 /// the calling thread follows.
 namespace footing::timer {
 
@@ -54,5 +55,13 @@ void DropWaits();
 void Run(boost::asio::io_context& io);
 /// io.run_one_until(end): returns after one handler, at the end, or when the io_context is stopped.
 void RunOneUntil(boost::asio::io_context& io, TimePoint end);
+
+/// How a wait ended.
+enum class Waited { kDone, kTimeUp, kInterrupted };
+
+/// Handles events of the io_context until the condition holds, which is asked after each of them;
+/// without one until the time is up. `interrupted` is asked first.
+Waited RunUntil(boost::asio::io_context& io, const std::function<bool()>& condition,
+                double within_s, const std::function<bool()>& interrupted);
 
 }  // namespace footing::timer

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "common/base/utf8.h"
+#include "common/base/text.h"
 
 namespace footing::stream {
 namespace {

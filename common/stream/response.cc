@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "common/base/time.h"
+#include "common/base/units.h"
 
 namespace footing::stream {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "common/base/utf8.h"
+#include "common/base/text.h"
 
 namespace footing::wire {
 

@@ -16,7 +16,7 @@ TOPS = ("common", "daemon", "clients")
 
 # path:function; the most lines it may have, and why.
 EXCEPTIONS = {
-    "common/body/standard_person.cc:Bones": (69, "a table of bones"),
+    "common/body/body.cc:Bones": (69, "a table of bones"),
 }
 
 CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\'', re.S)

@@ -140,7 +140,7 @@ class Includes(unittest.TestCase):
         self.found("common/a/x.cc", "auto t = std::chrono::steady_clock::now();\n", "reads a clock")
 
     def test_atomics_live_in_one_folder(self):
-        self.found("daemon/sensor/c/x.cc", "std::atomic<int> n;\n", "common/exchange only")
+        self.found("daemon/sensor/c/x.cc", "std::atomic<int> n;\n", "common/runtime/exchange.h only")
 
     def test_catching_everything_is_refused(self):
         self.found("daemon/sensor/c/x.cc", "try {} catch (...) {}\n", "catches everything")

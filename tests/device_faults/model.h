@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/virtual/devices/balance_board.h"
-#include "common/virtual/devices/identity.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
 
 namespace footing::device_faults {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/virtual/devices/ps_move.h"
+#include "common/virtual/devices/wiimote.h"
 #include "tests/device_faults/model.h"
 
 namespace footing::device_faults {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/virtual/devices/identity.h"
+#include "common/virtual/devices/controller.h"
 
 typedef struct _UMockdevTestbed UMockdevTestbed;
 

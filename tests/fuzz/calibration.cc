@@ -2,12 +2,8 @@
 #include <initializer_list>
 #include <vector>
 
-#include "daemon/sensor/reports/acceleration.h"
-#include "daemon/sensor/reports/board.h"
-#include "daemon/sensor/reports/checksum.h"
-#include "daemon/sensor/reports/gyroscope_bias.h"
-#include "daemon/sensor/reports/calibration_motion_plus.h"
-#include "daemon/sensor/reports/nunchuk.h"
+#include "daemon/sensor/reports/board_calibration.h"
+#include "daemon/sensor/reports/wiimote_calibration.h"
 #include "tests/fuzz/input.h"
 
 /// A memory block and a packet: every block is parsed, and with what came of it the packet is

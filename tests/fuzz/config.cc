@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "common/runtime/lines_of_keys.h"
 #include "common/net/access.h"
 #include "common/net/address.h"
 #include "tests/fuzz/input.h"

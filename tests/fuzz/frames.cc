@@ -2,8 +2,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/net/first_bytes.h"
 #include "common/net/framing.h"
+#include "common/net/tls_channel.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/pieces.h"
 

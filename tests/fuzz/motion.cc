@@ -3,9 +3,8 @@
 
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/bvh.h"
-#include "common/virtual/motion/c3d.h"
+#include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
-#include "common/virtual/motion/trc.h"
 #include "tests/fuzz/input.h"
 
 // Any bytes as each kind of motion file: read or refused, and what is read can be written.

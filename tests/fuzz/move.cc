@@ -1,4 +1,4 @@
-#include "daemon/sensor/reports/move.h"
+#include "daemon/sensor/reports/move_calibration.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include <string>
 #include <string_view>
 
-#include "clients/relay/parser.h"
+#include "clients/relay/nats_protocol.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/pieces.h"
 

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <variant>
 
-#include "common/camera/preview_reader.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/pieces.h"
 

@@ -4,13 +4,11 @@
 #include <limits>
 #include <string>
 
-#include "common/recording/seek.h"
-#include "common/recording/summary.h"
-#include "common/recording/walk.h"
-#include "common/recording/seekable_recording.h"
-#include "common/recording/shift_stamps.h"
+#include "common/net/tick.h"
+#include "common/recording/mcap_reader.h"
 #include "common/recording/recorded_session.h"
-#include "common/net/tick_rate.h"
+#include "common/recording/recording_server.h"
+#include "common/recording/seekable_recording.h"
 #include "tests/fuzz/input.h"
 
 /// Any bytes as a recording: read by every reader, from end to end, by its index, and by one that

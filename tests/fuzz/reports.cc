@@ -1,9 +1,7 @@
 #include <variant>
 
-#include "daemon/sensor/reports/camera.h"
-#include "daemon/sensor/reports/extension.h"
 #include "daemon/sensor/reports/input_report.h"
-#include "daemon/sensor/reports/memory_read.h"
+#include "daemon/sensor/reports/output_report.h"
 #include "tests/fuzz/input.h"
 
 /// Reports of one device after another: lengths and bytes. Every decoder sees every report.

@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "common/runtime/clock.h"
-#include "common/runtime/timekeeper.h"
-#include "common/runtime/run_until.h"
+#include "common/runtime/timer.h"
 #include "tests/fuzz/input.h"
 
 namespace footing::fuzz {

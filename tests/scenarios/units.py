@@ -85,7 +85,7 @@ def check_rule(_):
     rules = [line for line in (FOLDER / "70-footing.rules").read_text().splitlines()
              if line and not line.startswith("#")]
     assert len(rules) == 1, rules
-    code = (SOURCE / "daemon/sensor/devices/hid_search.cc").read_text()
+    code = (SOURCE / "daemon/sensor/devices/hid_source.cc").read_text()
     literals = re.search(r'kUdevRule =((?:\s*"(?:[^"\\]|\\.)*")+);', code)
     assert literals, "hid_search.cc has no kUdevRule any more"
     printed = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', literals[1])).replace('\\"', '"')

@@ -4,9 +4,8 @@
 
 #include <string>
 
-#include "common/runtime/data_file.h"
-#include "daemon/simulation/biped/mjcf.h"
-#include "daemon/simulation/biped/parameters.h"
+#include "common/runtime/files.h"
+#include "daemon/simulation/biped/model.h"
 
 /// The product's own data, for tests of the simulation.
 namespace footing::test {

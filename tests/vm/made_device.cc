@@ -1,8 +1,7 @@
 #include "tests/vm/made_device.h"
 
 #include "common/base/units.h"
-#include "common/virtual/devices/balance_board.h"
-#include "common/virtual/devices/ps_move.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
 #include "tests/vm/ramp.h"
 #include "tests/vm/report_descriptor.h"

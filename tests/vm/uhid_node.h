@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "common/virtual/devices/controller.h"
-#include "common/virtual/devices/identity.h"
 
 namespace footing::vm {
 

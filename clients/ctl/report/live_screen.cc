@@ -1,10 +1,17 @@
 #include "clients/ctl/report/live_screen.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
 #include <cmath>
+#include <memory>
+#include <vector>
+
+#include <qrencode.h>
 
 #include "clients/ctl/report/device_table.h"
-#include "clients/ctl/report/format.h"
-#include "clients/ctl/report/server_table.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
 
 namespace footing::ctl::display {
@@ -233,6 +240,201 @@ ordered_json LiveToJson(const Live& live, double seconds) {
           {"link", live.link},
           {"notice", live.notice},
           {"devices", std::move(devices)}};
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string Plural(std::uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string Counted(std::uint64_t count, const std::string& noun, const std::string& what = "") {
+  return count == 0 ? "" : ", " + Plural(count, noun) + what;
+}
+
+ordered_json KnownOrNull(bool known, double value) {
+  return known ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json SessionToJson(const stream::SessionStats& one) {
+  return {{"session", one.session},
+          {"client", one.client_name},
+          {"role", one.role},
+          {"local", one.local},
+          {"connected_s", one.connected_s},
+          {"policy", one.policy},
+          {"queue_ticks", one.queue_ticks},
+          {"queue_capacity", one.queue_capacity},
+          {"lag_s", one.lag_s},
+          {"ticks_sent", one.ticks_sent},
+          {"ticks_dropped", one.ticks_dropped},
+          {"budget_refusals", one.slowed},
+          {"clock_offset_s", KnownOrNull(one.clock_valid, one.clock_offset_s)},
+          {"clock_uncertainty_s", KnownOrNull(one.clock_valid, one.clock_uncertainty_s)}};
+}
+
+ordered_json DeviceToJson(const stream::DeviceStats& one) {
+  return {{"device", one.device},
+          {"serial", one.serial},
+          {"state", stream::Name(one.state)},
+          {"report_rate_hz", one.report_rate_hz},
+          {"jitter_s", one.jitter_s},
+          {"reports", one.reports},
+          {"gaps", one.gaps},
+          {"queue_drops", one.queue_drops},
+          {"undecodable", one.undecodable},
+          {"writes_failed", one.writes_failed},
+          {"battery_fraction", KnownOrNull(one.battery_fraction >= 0, one.battery_fraction)}};
+}
+
+}  // namespace
+
+ordered_json ServerStatsToJson(const stream::ServerStats& stats) {
+  ordered_json sessions = ordered_json::array(), devices = ordered_json::array();
+  for (const auto& one : stats.sessions) sessions.push_back(SessionToJson(one));
+  for (const auto& one : stats.devices) devices.push_back(DeviceToJson(one));
+  return {{"uptime_s", stats.uptime_s},
+          {"ticks",
+           {{"ticks", stats.ticks.ticks},
+            {"rate_hz", stats.ticks.rate_hz},
+            {"late_max_s", stats.ticks.late_max_s},
+            {"overruns", stats.ticks.overruns},
+            {"left_out", stats.ticks.left_out}}},
+          {"session_count", stats.session_count},
+          {"connections_accepted", stats.sessions_accepted},
+          {"connections_refused", stats.sessions_refused},
+          {"ticks_dropped", stats.ticks_dropped},
+          {"budget_refusals", stats.slowed},
+          {"channels_left_out", stats.channels_left_out},
+          {"ring_bytes", stats.ring_bytes},
+          {"sessions", std::move(sessions)},
+          {"devices", std::move(devices)}};
+}
+
+std::string ServerLine(const stream::ServerStats& stats) {
+  return "up " + Fixed(stats.uptime_s, 0) + " s, " + Fixed(stats.ticks.rate_hz, 1) +
+         " ticks per second, max delay " + Fixed(1e3 * stats.ticks.late_max_s, 1) + " ms, " +
+         Plural(stats.session_count, "session") + Counted(stats.ticks.overruns, "overrun") +
+         Counted(stats.ticks.left_out, "tick", " skipped (overload)") +
+         Counted(stats.ticks_dropped, "tick", " dropped (queue full)") +
+         Counted(stats.slowed, "rate-limit wait") +
+         Counted(stats.sessions_refused, "connection", " refused");
+}
+
+std::string SessionTable(const stream::ServerStats& stats) {
+  if (stats.sessions.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {
+      {"session", "client", "role", "policy", "queue", "lag ms", "sent", "dropped", "clock ms"}};
+  for (const stream::SessionStats& one : stats.sessions) {
+    rows.push_back({std::to_string(one.session), one.client_name, one.role,
+                    one.policy.empty() ? "-" : one.policy,
+                    std::to_string(one.queue_ticks) + "/" + std::to_string(one.queue_capacity),
+                    Fixed(1e3 * one.lag_s, 1), std::to_string(one.ticks_sent),
+                    std::to_string(one.ticks_dropped),
+                    one.clock_valid ? Fixed(1e3 * one.clock_offset_s, 2) + " +-" +
+                                          Fixed(1e3 * one.clock_uncertainty_s, 2)
+                                    : "-"});
+  }
+  std::string text = Table(rows);
+  if (stats.session_count > stats.sessions.size()) {
+    text += "not shown: " + std::to_string(stats.session_count - stats.sessions.size()) +
+            " that lag less\n";
+  }
+  return text;
+}
+
+namespace {
+
+std::string TwoDigits(unsigned value) {
+  return std::string(value < 10 ? "0" : "") + std::to_string(value);
+}
+
+bool IsNumber(const std::string& cell) {
+  return cell.find_first_of("0123456789") != std::string::npos &&
+         cell.find_first_not_of("0123456789.-% ") == std::string::npos;
+}
+
+}  // namespace
+
+std::string Fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  return text::Fixed(value, decimals);
+}
+
+std::string Date(std::int64_t wall_time_ns) {
+  if (wall_time_ns == 0) return "-";
+  const std::chrono::sys_time<std::chrono::nanoseconds> time{
+      std::chrono::nanoseconds(wall_time_ns)};
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(std::chrono::floor<std::chrono::minutes>(time - day));
+  return std::to_string(static_cast<int>(date.year())) + "-" +
+         TwoDigits(static_cast<unsigned>(date.month())) + "-" +
+         TwoDigits(static_cast<unsigned>(date.day())) + " " +
+         TwoDigits(static_cast<unsigned>(clock.hours().count())) + ":" +
+         TwoDigits(static_cast<unsigned>(clock.minutes().count())) + " UTC";
+}
+
+std::string Table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string blanks(widths[i] - row[i].size(), ' ');
+      if (i > 0) line += "  ";
+      line += IsNumber(row[i]) ? blanks + row[i] : row[i] + blanks;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string Bar(double value, double full, int cells) {
+  const double share = std::isfinite(value) ? std::clamp(value / full, 0.0, 1.0) : 0.0;
+  const auto filled = static_cast<std::size_t>(std::lround(share * cells));
+  return std::string(filled, '#') + std::string(static_cast<std::size_t>(cells) - filled, '.');
+}
+
+std::string Lamps(std::uint32_t leds) {
+  std::string text;
+  for (unsigned bit = 0; bit < 4; ++bit) text += (leds >> bit & 1u) != 0 ? '1' : '0';
+  return text;
+}
+
+namespace {
+
+constexpr int kBorder = 4;                             // ISO/IEC 18004: four squares.
+constexpr const char* kBlackOnWhite = "\x1b[30;107m";  // Whatever the terminal's colours are.
+constexpr const char* kPlain = "\x1b[0m";
+
+}  // namespace
+
+std::string QrCode(const std::string& text) {
+  const std::unique_ptr<QRcode, void (*)(QRcode*)> code(
+      QRcode_encodeString8bit(text.c_str(), 0, QR_ECLEVEL_L), QRcode_free);
+  if (!code) return "";
+  const auto dark = [&](int row, int column) {
+    const bool inside = row >= 0 && column >= 0 && row < code->width && column < code->width;
+    return inside && (code->data[row * code->width + column] & 1u) != 0;
+  };
+  std::string drawn;
+  for (int row = -kBorder; row < code->width + kBorder; row += 2) {
+    drawn += kBlackOnWhite;
+    for (int column = -kBorder; column < code->width + kBorder; ++column) {
+      const bool upper = dark(row, column), lower = dark(row + 1, column);
+      drawn += upper && lower ? "█" : upper ? "▀" : lower ? "▄" : " ";
+    }
+    drawn += std::string(kPlain) + "\n";
+  }
+  return drawn;
 }
 
 }  // namespace footing::ctl::display

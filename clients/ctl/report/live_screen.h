@@ -2,10 +2,11 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
@@ -42,5 +43,36 @@ std::string LiveLine(const Live& live);
 /// {seconds, devices: [...]}, each with its newest sample as "motion", "nunchuk", "gamepad" or
 /// "board".
 nlohmann::ordered_json LiveToJson(const Live& live, double seconds);
+
+/// How a server fares: {uptime_s, ticks: {...}, session_count, ..., sessions: [...], devices:
+/// [...]}. What is unknown is null.
+nlohmann::ordered_json ServerStatsToJson(const stream::ServerStats& stats);
+
+/// One line: ticks, overload, sessions.
+std::string ServerLine(const stream::ServerStats& stats);
+
+/// A line a session: who it is, what waits for it, what it lost; empty without a session.
+std::string SessionTable(const stream::ServerStats& stats);
+
+/// Small pieces of text for a terminal. No locale.
+/// "1.5"; decimals 0 to 9. What is not finite is "-".
+std::string Fixed(double value, int decimals);
+
+/// UNIX time as "2026-11-21 10:15 UTC"; "-" for 0.
+std::string Date(std::int64_t wall_time_ns);
+
+/// The first row is the heading. Columns stand two spaces apart, numbers to the right; no blanks at
+/// the end of a line.
+std::string Table(const std::vector<std::vector<std::string>>& rows);
+
+/// `value` of `full` as `cells` characters of '#' and '.'; clipped to the bar.
+std::string Bar(double value, double full, int cells);
+
+/// Bits 0 to 3 as "1010", first lamp first.
+std::string Lamps(std::uint32_t leds);
+
+/// The text as a QR code for a terminal with UTF-8, two rows of squares a line, dark on light with
+/// the light border that cameras need. Empty when the text is too long for one.
+std::string QrCode(const std::string& text);
 
 }  // namespace footing::ctl::display

@@ -1,14 +1,85 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "clients/ctl/report/facts.h"
+#include "common/stream/device.h"
+#include "common/stream/setup.h"
 
-/// The texts from which facts come: pure functions of what a file or program said.
+/// What the doctor knows about a host, as plain values. Nothing here was looked up: the caller did.
 namespace footing::ctl::doctor {
 
+struct User {
+  std::string name;
+  std::uint32_t uid = 0;
+  std::vector<std::uint32_t> gids;
+};
+
+/// A HID device of a kind that Footing knows, as the kernel lists it.
+struct HidDevice {
+  std::string sysfs_id;  ///< "0005:057E:0306.0003": bus, vendor, product, instance.
+  std::string name;
+  std::string serial;
+  std::string driver;  ///< Bound kernel driver; empty when none is.
+  std::string node;    ///< "/dev/hidraw3"; empty when there is none.
+  bool node_exists = false;
+  std::uint32_t node_uid = 0;
+  std::uint32_t node_gid = 0;
+  std::uint32_t node_mode = 0;  ///< Permission bits.
+};
+
+struct Adapter {
+  std::string name;  ///< "hci0".
+  bool blocked_soft = false;
+  bool blocked_hard = false;
+  std::optional<bool> powered;  ///< As bluetoothctl says; nothing when it was not asked.
+  int links = 0;                ///< Active connections.
+};
+
+/// A device that BlueZ knows, as bluetoothctl reports it.
+struct KnownDevice {
+  std::string address;
+  std::string name;
+  bool paired = false;
+  bool bonded = false;
+  bool trusted = false;
+  bool connected = false;
+};
+
+struct Facts {
+  User user;
+  /// Of each running footingd: process number and whose it is.
+  std::map<int, User> daemons;
+  std::optional<std::uint32_t> footing_gid;  ///< Group "footing", where there is one.
+  bool user_listed_in_group = false;  ///< In the group's file, perhaps not yet in the session.
+
+  std::vector<HidDevice> hid;
+  std::vector<std::string> udev_rules;  ///< Files with a rule for the hidraw nodes of our devices.
+  std::vector<std::string> blacklists;  ///< Files that blacklist hid_wiimote.
+  bool ignore_special_drivers = false;
+
+  std::vector<Adapter> adapters;
+  bool bluetoothd_running = false;
+  std::string bluez_version;                        ///< "5.66"; empty when unknown.
+  std::map<std::string, std::string> input_config;  ///< Keys set in BlueZ's input.conf.
+  std::vector<KnownDevice> known;
+
+  bool footingd_reached = false;
+  std::string footingd_address;
+  std::string footingd_trouble;  ///< Why it was not reached.
+  std::string footingd_version;
+  std::string own_version;
+  std::vector<stream::DeviceStatus> devices;
+  std::vector<stream::RigSetup> setup;
+};
+
+/// The first process, or the person at the console where none runs: whoever opens the nodes.
+const User& OpenerOfNodes(const Facts& facts);
+
+/// The texts from which facts come: pure functions of what a file or program said.
 /// Keys and values of an INI file as BlueZ reads it; comments and sections are dropped, values in
 /// lower case.
 std::map<std::string, std::string> ParseIni(const std::string& text);

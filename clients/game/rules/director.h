@@ -1,14 +1,134 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "clients/game/rules/builder.h"
-#include "clients/game/rules/facts.h"
+#include "common/body/centre_line.h"
 #include "common/stream/game.h"
+#include "common/stream/track.h"
+#include "common/stream/trial.h"
 
+/// The terrain editor (gait paper, section 8.2 and figure 13): "create a slope by inclining the
+/// Wiimote vertically, a curve by inclining the Wiimote sideways, and a step by pushing button A
+/// and inclining the Wiimote vertically"; the terrain is 4 m wide, slopes are within 5 degrees,
+/// curves within 15 degrees, steps within 10 cm. How the inclination is scaled to these limits, and
+/// how long a segment is, the paper does not say.
 namespace footing::game {
+
+/// What the builder does with the device of the role editor.
+struct Hand {
+  bool known = false;    ///< False: nothing has come from it for a while; the ground stays level.
+  double roll_rad = 0;   ///< Left side higher is positive: inclined to the right.
+  double pitch_rad = 0;  ///< Front higher is positive.
+  bool a = false;        ///< Button A is held: a step in place of a slope.
+  bool b = false;        ///< Button B is held: a pit, where pits are allowed.
+};
+
+using track::Piece;
+
+/// Inclinations within this are level, rad: nobody holds a hand quite still.
+inline constexpr double kDeadZoneRad = 0.105;  // 6 degrees.
+/// At this inclination and beyond a property is at its limit, rad; between, it grows evenly.
+inline constexpr double kFullRad = 0.785;  // 45 degrees: the wrist goes no further at ease.
+
+/// The piece that the hand asks for at the track's end: within the paper's limits, and one that an
+/// extendable track takes. Curves do not turn the track by more than 90 degrees from its start's
+/// direction, so that it never runs into itself; after a pit come neither a pit nor a curve. Its
+/// length is the way of about 1 s at `speed_mps`, within 2 and 4 m. `track` is not empty.
+Piece Held(const Hand& hand, const stream::Track& track, double speed_mps, bool pits);
+
+/// When a piece is laid: as soon as less track lies ahead of the runner than it covers in 3 s (6 to
+/// 12 m), so that ground always lies ahead and the builder still decides late. What the hand holds
+/// then is laid, as the ghost showed it.
+class Builder {
+ public:
+  /// What is known of the runner and the track, at one instant.
+  struct Sight {
+    double time_s = 0;      ///< Simulation time.
+    double distance_m = 0;  ///< Of the runner, along the track.
+    double speed_mps = 0;
+    const stream::Track& track;  ///< As published last; not empty.
+  };
+
+  explicit Builder(bool pits) : pits_(pits) {}
+
+  /// The piece to append now; nothing while enough lies ahead, or while one is on its way.
+  std::optional<Piece> Advance(const Sight& sight, const Hand& hand);
+  /// The track did not take the last piece: a plain one follows, whatever the hand holds.
+  void OnRefused();
+  /// A new track: what was on its way is void.
+  void Restart();
+
+  /// What would be laid now.
+  const Piece& ghost() const { return ghost_; }
+  std::uint32_t refused() const { return refused_; }
+
+ private:
+  bool pits_;
+  Piece ghost_;
+  std::optional<double> sent_s_;     ///< When a piece went out that has not shown yet.
+  std::uint64_t sent_revision_ = 0;  ///< Of the track at that time.
+  bool plain_ = false;
+  std::uint32_t refused_ = 0;
+};
+
+/// How much track is kept ahead of a runner of that speed, m.
+double LookAheadM(double speed_mps);
+
+/// What footing-sim publishes of a round: all that scores depend on. A recording holds the same.
+/// A failure as its event reports it.
+struct Fault {
+  std::uint64_t number = 0;
+  stream::FailureCause cause = stream::FailureCause::kUnspecified;
+  std::string trial;
+  double distance_m = 0;  ///< Along the track.
+  bool withdrawn = false;
+};
+
+/// A segment that the builder laid.
+struct Stretch {
+  double from_m = 0;  ///< Along the track.
+  double length_m = 0;
+  double slope_rad = 0;
+  double curve_rad = 0;
+  double step_m = 0;
+  bool pit = false;
+};
+
+/// One trial of a track that grows.
+struct RoundFacts {
+  std::uint64_t trial_number = 0;
+  stream::TrialPhase phase = stream::TrialPhase::kUnspecified;
+  double start_m = 0;     ///< Of the start line.
+  double end_m = 0;       ///< Of the track, so far.
+  double farthest_m = 0;  ///< Along the track.
+  double time_s = 0;
+  std::vector<Stretch> laid;
+  std::map<std::uint64_t, Fault> faults;  ///< By number, as they count now.
+};
+
+/// Collects the facts of every trial that has an id, from ticks in their order. The track of a new
+/// trial comes with the tick of its first state, or before it. What happens after a trial was
+/// stopped belongs to no round, but for corrections of its failures.
+class Collector {
+ public:
+  void OnTrack(const stream::Track& track) { track_ = track; }
+  void OnFault(const Fault& fault);
+  /// After the track and the faults of its tick.
+  void OnTrial(const stream::TrialState& trial);
+
+  const stream::Track& track() const { return track_; }
+  /// Null for a trial that has not been seen.
+  const RoundFacts* Find(const std::string& trial) const;
+
+ private:
+  stream::Track track_;
+  std::map<std::string, RoundFacts> facts_;  ///< By id of the trial.
+};
 
 struct GameOptions {
   std::string host = "footing-game";
@@ -75,5 +195,30 @@ class Director {
   double time_s_ = 0;      ///< Of the last frame.
   double published_s_ = -1e9;
 };
+
+/// Points, from published facts alone. The paper had no score; docs/game.md has the rules.
+/// Of the runner.
+inline constexpr double kPointsPerM = 1;
+inline constexpr double kPointsPerFailure = -5;
+inline constexpr double kPointsPerDifficulty = 3;
+/// Of the builder, for the first failure on one of their segments: a fall, and leaving the ribbon.
+/// Pits are not part of the paper's game, and easier to lay than to clear.
+inline constexpr double kPointsPerFall = 10;
+inline constexpr double kPointsPerExit = 8;
+inline constexpr double kPointsPerPit = 5;
+/// A second failure on one segment counts half for the builder; one more counts for nobody, since
+/// what fails three times cannot be passed.
+inline constexpr double kSecondShare = 0.5;
+inline constexpr int kMostFailuresThatCount = 2;
+
+/// 0 for level straight ground; each of slope, curve and step adds 1 at its limit, a pit adds 1
+/// and its length over 1.5 m.
+double DifficultyOf(const Stretch& stretch);
+
+/// The round's points, in whole numbers, and what they come from. The runner has at least 0.
+stream::GameRound Score(const RoundFacts& facts);
+
+/// Adds up the players' points over the results.
+void AddUp(stream::GameState& game);
 
 }  // namespace footing::game

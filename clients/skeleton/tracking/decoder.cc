@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "common/base/lines.h"
-#include "common/base/time.h"
+#include "common/base/text.h"
+#include "common/base/units.h"
 
 namespace footing::skeleton {
 namespace {

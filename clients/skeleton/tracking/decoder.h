@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "clients/skeleton/tracking/dialects.h"
-#include "clients/skeleton/tracking/vmc.h"
 #include "clients/skeleton/tracking/joint_set.h"
 #include "clients/skeleton/tracking/osc.h"
 

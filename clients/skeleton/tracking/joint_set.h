@@ -2,11 +2,72 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
-#include "clients/skeleton/tracking/joints.h"
+#include <Eigen/Core>
 
+/// A person's skeleton as a camera sees it, in the 15 joints of OpenNI.
 namespace footing::skeleton {
+
+/// The joints that NiTE fills, in its order. A hand is the middle of the fist, a foot the ankle.
+enum class Joint : std::uint8_t {
+  kHead,
+  kNeck,
+  kLeftShoulder,
+  kRightShoulder,
+  kLeftElbow,
+  kRightElbow,
+  kLeftHand,
+  kRightHand,
+  kTorso,
+  kLeftHip,
+  kRightHip,
+  kLeftKnee,
+  kRightKnee,
+  kLeftFoot,
+  kRightFoot,
+};
+inline constexpr std::size_t kJoints = 15;
+
+constexpr std::size_t Index(Joint joint) { return static_cast<std::size_t>(joint); }
+
+/// In the names of OSCeleton: "head", "l_shoulder", ...
+inline constexpr std::array<std::string_view, kJoints> kJointNames = {
+    "head",  "neck",  "l_shoulder", "r_shoulder", "l_elbow", "r_elbow", "l_hand", "r_hand",
+    "torso", "l_hip", "r_hip",      "l_knee",     "r_knee",  "l_foot",  "r_foot"};
+
+/// The joint on the other side of the body; itself for those in the middle.
+Joint Mirrored(Joint joint);
+
+/// Where a joint is in the camera's frame K: x to the camera's left, y up, z away from it, right
+/// handed, metres. A person who faces the camera has the left hand at negative x.
+struct JointReading {
+  Eigen::Vector3d p_K_m = Eigen::Vector3d::Zero();
+  double confidence = 0;  ///< 0 to 1; 0: the joint is absent. 1 tracked, 0.5 inferred, as NiTE.
+
+  bool present() const { return confidence > 0; }
+};
+
+/// One exposure of one person.
+struct Skeleton {
+  std::int32_t user = 0;
+  std::array<JointReading, kJoints> joints;
+  std::optional<std::int64_t> sequence;
+  std::optional<std::int64_t> sent_ns;  ///< The sender's own time of the exposure.
+  bool unix_time = false;               ///< sent_ns counts from 1970, not from the sender's start.
+  /// From the ankles to the toes, both feet added up, where the sender has toes.
+  std::optional<Eigen::Vector3d> toes_K_m;
+
+  JointReading& operator[](Joint joint) { return joints[Index(joint)]; }
+  const JointReading& operator[](Joint joint) const { return joints[Index(joint)]; }
+  std::size_t present() const;
+};
+
+/// Left called right, and right left.
+Skeleton SwappedSides(const Skeleton& skeleton);
+/// The skeleton in a mirror: x negated, left and right swapped.
+Skeleton MirrorImage(const Skeleton& skeleton);
 
 /// Computes an absent neck (between the shoulders) and torso (between shoulders and hips).
 void FillTrunk(Skeleton& skeleton);

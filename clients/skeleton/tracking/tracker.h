@@ -6,17 +6,111 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "clients/skeleton/tracking/decoder.h"
-#include "clients/skeleton/tracking/person_gate.h"
+#include "clients/skeleton/tracking/joint_set.h"
 #include "clients/skeleton/tracking/osc.h"
-#include "clients/skeleton/tracking/observation.h"
-#include "clients/skeleton/tracking/placement.h"
-#include "clients/skeleton/tracking/sender_clock.h"
+#include "clients/skeleton/tracking/person_gate.h"
+#include "common/base/result.h"
+#include "common/stream/hands.h"
 
 namespace footing::skeleton {
+
+/// A joint in W. What is absent has no place.
+struct JointObservation {
+  bool present = false;
+  bool inferred = false;  ///< The camera did not see it and filled it in.
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_W_m2 = Eigen::Matrix3d::Identity();
+  double confidence = 0;
+};
+
+/// One exposure of one person, as it goes to footingd.
+struct Observation {
+  std::int32_t user = 0;
+  std::optional<std::int64_t> sequence;
+  std::int64_t exposed_ns = 0, arrived_ns = 0;  ///< Monotonic, of this host.
+  std::array<JointObservation, kJoints> joints;
+  Eigen::Isometry3d X_WK = Eigen::Isometry3d::Identity();  ///< By which they are in W.
+};
+
+/// Standard deviations of a tracked joint: jitter of recorded Kinect v2 joints (2 to 4 mm between
+/// frames, 10 to 21 mm of bone length) and the offset against marker systems, which changes slowly
+/// (50 to 100 mm for most joints of the Kinect 2: Wang, Kurillo et al. 2015, here 40 mm, since half
+/// of it are other definitions of joints). An inferred joint has three times as much.
+inline constexpr double kJitterM = 0.015;
+inline constexpr double kOffsetM = 0.04;
+inline constexpr double kInferredFactor = 3;
+
+/// A frame behind the gate, in W.
+Observation Observe(const Skeleton& skeleton, const Eigen::Isometry3d& X_WK);
+
+/// An observation for the device socket: all joints, those that are absent, or too far off, with
+/// confidence 0. What counts of a point is its covariance over its confidence, which is the
+/// observation's (docs/protocol.md).
+stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_ns);
+
+/// Where the camera is in W and where it looks.
+struct CameraPlace {
+  Eigen::Vector3d p_W_m{2.5, 0, 1};  ///< Of K's origin, above the boards' surface.
+  double yaw_rad =
+      3.141592653589793;  ///< Of its look about W's z; 0 looks along x, pi at a person.
+  double pitch_rad = 0;   ///< Upwards positive.
+  double roll_rad = 0;    ///< Its left side up is positive.
+};
+
+/// K in W.
+Eigen::Isometry3d ToPose(const CameraPlace& place);
+
+/// A place found from a person who stands on the boards.
+struct StandingFit {
+  CameraPlace place;
+  double lean_rad = 0;   ///< Of the trunk against the camera's up: its tilt, or the person's.
+  double scatter_m = 0;  ///< Standard deviation of the middle of the feet.
+};
+
+inline constexpr double kStandingS = 2;
+inline constexpr std::size_t kLeastStandingFrames = 10;  ///< However long they take.
+inline constexpr double kMostLeanRad = 0.26;             ///< 15 degrees.
+inline constexpr double kMostScatterM = 0.03;
+inline constexpr double kAnkleHeightM = 0.08;  ///< Of an ankle's centre above the sole.
+
+/// The place of a camera from frames of a person who stands still on the boards, facing along W's
+/// x: left is where shoulders and hips say, the middle of the ankles is above W's origin. Pitch and
+/// roll are known from `known`. Failure says what to do: too few whole frames, a person who moves,
+/// a trunk that leans by more than 15 degrees. If left and right are swapped, the camera would be
+/// on the opposite side, so it is a failure, too, that the toes point back, or that the person does
+/// not face a camera where there is one (`by_camera`).
+Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPlace& known,
+                                bool by_camera = true);
+
+/// How old an exposure is by the sender's own time. A sender on this host, or with a synchronised
+/// clock, gives it at once. Of any other clock only differences mean something: the fastest packet
+/// of the last 10 to 20 s is taken to have needed `latency`, the others longer. A plain value.
+class SenderClock {
+ public:
+  static constexpr std::int64_t kOldestNs = 500'000'000;  ///< Older ones have another clock.
+  static constexpr std::int64_t kWindowNs = 10'000'000'000;
+
+  explicit SenderClock(std::int64_t latency_ns) : latency_ns_(latency_ns) {}
+
+  /// `sent_ns`: none where the sender gives no time; `unix_time`: it counts from 1970, as
+  /// `wall_ns` does. `now_ns` is monotonic and does not decrease. The age is 0 to 1 s.
+  std::int64_t Age(std::optional<std::int64_t> sent_ns, bool unix_time, std::int64_t now_ns,
+                   std::int64_t wall_ns);
+
+ private:
+  static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+
+  std::int64_t latency_ns_;
+  std::int64_t window_began_ns_ = 0;
+  std::int64_t least_ns_ = kNone, least_before_ns_ = kNone;  // Of this window, of the last one.
+};
 
 struct TrackerOptions {
   DialectOptions dialect = {};

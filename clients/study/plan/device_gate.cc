@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/base/number.h"
+#include "common/base/text.h"
 
 namespace footing::study::gate {
 namespace {

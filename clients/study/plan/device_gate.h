@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/plan/played.h"
+#include "clients/study/plan/phases.h"
 #include "clients/study/plan/protocol.h"
 #include "common/stream/device.h"
 

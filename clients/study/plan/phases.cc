@@ -1,11 +1,15 @@
 #include "clients/study/plan/phases.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <set>
+#include <string>
 
-#include "clients/study/plan/draw.h"
-#include "clients/study/plan/order.h"
+#include "common/base/text.h"
+#include "common/stream/interface_roles.h"
+#include "common/stream/leg_turn.h"
 
 namespace footing::study::plan {
 namespace {
@@ -168,6 +172,93 @@ std::vector<std::string> Remarks(const Protocol& protocol) {
     remarks.push_back("simulated devices are allowed: for trying out, not for a study");
   }
   return remarks;
+}
+
+namespace {
+
+std::vector<std::size_t> UpTo(std::size_t count) {
+  std::vector<std::size_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  return numbers;
+}
+
+/// 0, 1, n - 1, 2, n - 2, ...: its neighbours' differences are all different when n is even.
+std::vector<std::size_t> FirstRow(std::size_t count) {
+  std::vector<std::size_t> row;
+  for (std::size_t i = 0; i < count; ++i) {
+    row.push_back(i == 0 ? 0 : i % 2 == 1 ? (i + 1) / 2 : count - i / 2);
+  }
+  return row;
+}
+
+}  // namespace
+
+Orders WilliamsOrders(std::size_t count) {
+  Orders orders;
+  const std::vector<std::size_t> first = FirstRow(count);
+  for (std::size_t shift = 0; shift < count; ++shift) {
+    std::vector<std::size_t> row;
+    for (const std::size_t condition : first) row.push_back((condition + shift) % count);
+    orders.push_back(std::move(row));
+  }
+  if (count % 2 == 1 && count > 1) {
+    for (std::size_t i = 0; i < count; ++i) {
+      orders.emplace_back(orders[i].rbegin(), orders[i].rend());
+    }
+  }
+  return orders;
+}
+
+Orders BalancedOrders(std::size_t count, std::size_t participants, std::uint64_t seed) {
+  Orders orders;
+  Draw draw(seed, "order");
+  const Orders square = WilliamsOrders(count);
+  while (orders.size() < participants) {
+    std::vector<std::size_t> names = UpTo(count);
+    std::vector<std::size_t> rows = UpTo(square.size());
+    draw.Shuffle(names);
+    draw.Shuffle(rows);
+    for (const std::size_t row : rows) {
+      if (orders.size() == participants) break;
+      std::vector<std::size_t> order;
+      for (const std::size_t condition : square[row]) order.push_back(names[condition]);
+      orders.push_back(std::move(order));
+    }
+  }
+  return orders;
+}
+
+Orders RandomOrders(std::size_t count, std::size_t participants, std::uint64_t seed) {
+  Orders orders;
+  for (std::size_t i = 0; i < participants; ++i) {
+    std::vector<std::size_t> order = UpTo(count);
+    Draw(seed, "order " + std::to_string(i)).Shuffle(order);
+    orders.push_back(std::move(order));
+  }
+  return orders;
+}
+
+/// FNV-1a, started with the seed.
+Draw::Draw(std::uint64_t seed, std::string_view purpose) {
+  std::uint64_t hash = text::kFnvBasis;
+  const auto mix = [&hash](unsigned char byte) { hash = text::AddFnv(hash, byte); };
+  for (int i = 0; i < 8; ++i) mix(static_cast<unsigned char>(seed >> (8 * i)));
+  for (const char c : purpose) mix(static_cast<unsigned char>(c));
+  engine_.seed(hash);
+}
+
+std::size_t Draw::Below(std::size_t count) {
+  constexpr std::uint64_t kGreatest = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t whole = kGreatest - kGreatest % count;  // A multiple: no remainder is rarer.
+  for (;;) {
+    const std::uint64_t bits = engine_();
+    if (bits < whole) return static_cast<std::size_t>(bits % count);
+  }
+}
+
+std::vector<stream::DeviceRole> RolesOf(const Played& played) {
+  return stream::RolesOf(stream::UserInterfaceNamed(played.interface),
+                         stream::LegTurnSourceNamed(played.turn_by));
 }
 
 }  // namespace footing::study::plan

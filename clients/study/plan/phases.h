@@ -2,10 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <random>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
+#include "common/stream/device.h"
 
 namespace footing::study::plan {
 
@@ -55,5 +59,48 @@ std::vector<Session> MakeSessions(const Protocol& protocol);
 
 /// What an experimenter should know of the plan, such as a square that is not complete.
 std::vector<std::string> Remarks(const Protocol& protocol);
+
+/// In which order participants use the interfaces.
+/// Orders of the conditions 0 to count - 1.
+using Orders = std::vector<std::vector<std::size_t>>;
+
+/// The Latin square of Williams (1949): every condition equally often at each position, and equally
+/// often right after each other one. An even count needs `count` rows, an odd one twice as many.
+Orders WilliamsOrders(std::size_t count);
+
+/// An order for each participant from whole squares: the rows of each square come in random order
+/// and the conditions are dealt to its columns at random.
+Orders BalancedOrders(std::size_t count, std::size_t participants, std::uint64_t seed);
+
+/// An independent random order for each participant.
+Orders RandomOrders(std::size_t count, std::size_t participants, std::uint64_t seed);
+
+/// Random numbers of one purpose: the seed of the protocol and a label give the same numbers on
+/// every machine, and a further purpose does not shift those of the others.
+class Draw {
+ public:
+  Draw(std::uint64_t seed, std::string_view purpose);
+
+  /// A whole number in [0, count), each as likely. `count` is at least 1.
+  std::size_t Below(std::size_t count);
+  std::uint64_t Bits() { return engine_(); }
+
+  template <typename Value>
+  void Shuffle(std::vector<Value>& values) {
+    for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[Below(i)]);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// What a participant commands the character with.
+struct Played {
+  std::string interface;         ///< Name of a stream::UserInterface.
+  std::string turn_by = "head";  ///< Of the interface leg: head, trunk or feet.
+};
+
+/// The roles of its devices, as stream::RolesOf.
+std::vector<stream::DeviceRole> RolesOf(const Played& played);
 
 }  // namespace footing::study::plan

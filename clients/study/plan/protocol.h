@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "common/base/result.h"
 
@@ -104,5 +107,65 @@ inline constexpr const char* kCodeRule =
 /// Reads a protocol; comments are allowed. `file` names it in errors, which are InvalidData and say
 /// which key has which value and what it may be.
 Result<Protocol> ParseProtocol(const std::string& text, const std::string& file);
+
+/// Reads the keys of a JSON object. The first fault is kept; its message names file, key, value and
+/// what is allowed. A key that is missing leaves the value as it is.
+class Reader {
+ public:
+  /// `place` names the object in messages: the file, or "FILE: survey".
+  Reader(const nlohmann::ordered_json& object, std::string place);
+
+  void Text(const std::string& key, std::string& value);
+  void Flag(const std::string& key, bool& value);
+  void Number(const std::string& key, double& value, double least, double greatest);
+  void Whole(const std::string& key, std::uint64_t& value, std::uint64_t least,
+             std::uint64_t greatest);
+  /// A list of different texts; `least` to `greatest` of them.
+  void Texts(const std::string& key, std::vector<std::string>& value, std::size_t least,
+             std::size_t greatest);
+  /// An object of its own; null when the key is missing.
+  const nlohmann::ordered_json* Object(const std::string& key);
+  void Require(const std::string& key);
+  void Fail(const std::string& key, const std::string& what);
+
+  /// The first fault; a key that nothing above has read is one.
+  Result<void> Finish();
+
+ private:
+  const nlohmann::ordered_json* Find(const std::string& key);
+  void Wrong(const std::string& key, const nlohmann::ordered_json& value,
+             const std::string& allowed);
+
+  const nlohmann::ordered_json& object_;
+  std::string place_;
+  std::vector<std::string> known_;
+  std::optional<Error> fault_;
+};
+
+enum class SurveyScale {
+  kRating,    ///< 1 to 5.
+  kExertion,  ///< 0 to 10.
+  kText,      ///< One line.
+  kChoice,    ///< One of `choices`.
+};
+
+/// One question of a survey.
+struct SurveyItem {
+  std::string interface;  ///< Empty: about the whole study.
+  std::string item;       ///< What is rated, or the question; "exertion" for the exertion.
+  SurveyScale scale = SurveyScale::kRating;
+  bool at_end = false;  ///< Asked after the last interface.
+  std::vector<std::string> choices = {};
+
+  bool operator==(const SurveyItem&) const = default;
+};
+
+/// What is asked right after an interface, in this order.
+std::vector<SurveyItem> ItemsAfter(const Protocol& protocol, const std::string& interface);
+
+/// What is asked at the end. Each item is asked of every interface, in the order in which they were
+/// used, before the next item: so they are compared with each other.
+std::vector<SurveyItem> ItemsAtEnd(const Protocol& protocol,
+                                   const std::vector<std::string>& interfaces);
 
 }  // namespace footing::study::plan

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "clients/study/plan/played.h"
+#include <nlohmann/json.hpp>
+
+#include "clients/study/plan/phases.h"
 #include "common/base/result.h"
 
 /// A person's comfortable range for an interface (gait paper, section 7: the mapping goes from "the

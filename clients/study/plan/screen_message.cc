@@ -2,8 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/base/lines.h"
-#include "common/base/number.h"
+#include "common/base/text.h"
 
 namespace footing::study::screen {
 namespace {

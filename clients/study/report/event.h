@@ -1,11 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "clients/study/plan/phases.h"
+#include "clients/study/plan/protocol.h"
 #include "common/base/result.h"
 
 /// What a session's journal says: one JSON object a line, in the order in which it happened. What
@@ -63,5 +68,50 @@ struct JournalText {
 /// wrote. It is dropped and counted. Any other line that is not an event, or whose number is not
 /// the next one, is InvalidData with `file` and line.
 Result<JournalText> ParseJournal(std::string_view text, const std::string& file);
+
+/// How long a participant has been moving, out of a journal. A phase's time holds that of its
+/// trials; of a phase that was interrupted the trials that ended count.
+class ActiveTally {
+ public:
+  /// Every event, in their order.
+  void Add(const Event& event);
+
+  /// By interface, s; phases without an interface have an empty name.
+  std::map<std::string, double> by_interface() const;
+  double total_s() const;
+
+ private:
+  std::map<std::string, double> by_interface_;
+  std::string interface_;   ///< Of the phase that goes on.
+  double of_trials_s_ = 0;  ///< Of the trials that ended in it.
+};
+
+/// The field of a note that says after how long in motion the participant had a long rest.
+inline constexpr const char* kRestedAt = "rested_at_active_s";
+
+/// Where a session stands after its events.
+struct Progress {
+  bool started = false;
+  bool finished = false;
+  bool withdrawn = false;
+  std::size_t next_phase = 0;  ///< The first one that is not finished; as many as phases: none.
+  std::size_t phases_finished = 0;
+  std::map<std::string, std::size_t> attempts;  ///< Trials begun, by phase.
+  /// The outcome of the last attempt that counts, by phase.
+  std::map<std::string, std::string> outcomes;
+  double active_s = 0;            ///< How long the participant has been moving.
+  double rested_at_s = 0;         ///< The same when they last had a long rest (kRestedAt).
+  std::string interrupted_trial;  ///< Without an end, or with kInterrupted; empty: none.
+};
+
+Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>& events);
+
+/// The items of a survey that have no answer yet, in their order: an interrupted survey goes on
+/// with them.
+std::vector<plan::SurveyItem> Unanswered(const std::vector<plan::SurveyItem>& items,
+                                         const std::vector<Event>& events);
+
+/// The line for a person: "P07 stopped in wrist.test, attempt 2".
+std::string Describe(const Progress& progress, const plan::Session& session);
 
 }  // namespace footing::study::records

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "clients/study/report/active_tally.h"
+#include "clients/study/report/event.h"
 
 namespace footing::study::records {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/base/result.h"
-#include "common/runtime/run_until.h"
+#include "common/runtime/timer.h"
 
 namespace footing::study {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/report/progress.h"
+#include "clients/study/report/event.h"
 #include "clients/study/session/session_context.h"
-#include "clients/study/session/trial_events.h"
+#include "clients/study/session/trial_run.h"
 #include "common/base/result.h"
 #include "common/stream/study.h"
 

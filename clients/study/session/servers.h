@@ -6,19 +6,32 @@
 #include <string>
 #include <vector>
 
-#include "clients/study/session/active_time.h"
 #include "clients/study/session/console.h"
 #include "common/base/result.h"
+#include "common/net/address.h"
 #include "common/stream/device.h"
 #include "common/stream/gait.h"
 #include "common/stream/study.h"
 #include "common/stream/track.h"
 #include "common/stream/trial.h"
 #include "common/stream/user_interface.h"
-#include "common/net/address.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::study {
+
+/// How long a participant has been moving: the time during which footingd reports that a controller
+/// on the body moves. Thumbs on a joystick and weight on boards do not count.
+class ActiveTime {
+ public:
+  /// From each tick; `host_ns` is the server's clock. Time across a gap in the stream, or before
+  /// the first tick, is not counted.
+  void Add(std::int64_t host_ns, bool moving);
+  double seconds() const { return seconds_; }
+
+ private:
+  std::int64_t last_ns_ = 0;
+  double seconds_ = 0;
+};
 
 /// What a session needs of a frame: of its first character.
 struct SimulationFrame {

@@ -1,10 +1,17 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "clients/study/plan/survey_items.h"
+#include "clients/study/plan/protocol.h"
+#include "clients/study/plan/screen_message.h"
+#include "clients/study/session/console.h"
 #include "clients/study/session/session_context.h"
 #include "common/base/result.h"
+#include "common/net/address.h"
 
 namespace footing::study {
 
@@ -12,5 +19,48 @@ namespace footing::study {
 /// in the terminal, and writes each answer into the journal before the next question. `items` are
 /// those of one survey.
 Result<void> RunSurvey(SessionContext& context, const std::vector<plan::SurveyItem>& items);
+
+/// Answers of a participant who is not there: random, from a seed. Whatever they answer is marked
+/// synthetic in the journal.
+struct Respondent {
+  std::uint64_t seed = 1;
+  std::string participant;
+
+  /// A whole number from `least` to `greatest`, each as likely.
+  int Rate(const std::string& interface, const std::string& item, int least, int greatest) const;
+  /// One of them, each as likely. `choices` must not be empty.
+  std::string Choose(const std::string& interface, const std::string& question,
+                     const std::vector<std::string>& choices) const;
+  std::string Answer(const std::string& interface, const std::string& question) const;
+};
+
+/// The participant's survey screen, footing-study survey, as its server. What is shown stays until
+/// something else is, whichever screen comes and goes. At most four screens show it; the first
+/// answer counts.
+class SurveyScreen {
+ public:
+  /// Listens; errors say which address, why, and what to do.
+  static Result<std::unique_ptr<SurveyScreen>> Open(Console& console,
+                                                    const transport::Address& address);
+  ~SurveyScreen();
+  SurveyScreen(const SurveyScreen&) = delete;
+  SurveyScreen& operator=(const SurveyScreen&) = delete;
+
+  const transport::Address& address() const;
+  bool connected() const;
+
+  /// Shows a question, to which a number of its own is given.
+  void Ask(screen::Shown question);
+  /// Shows a message in its place.
+  void Say(const std::string& message);
+  /// The answer to the question, once it has come; an answer to another one, or one outside of a
+  /// rating's range, is dropped.
+  std::optional<std::string> TakeAnswer();
+
+ private:
+  class Implementation;
+  explicit SurveyScreen(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace footing::study

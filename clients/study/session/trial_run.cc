@@ -1,20 +1,187 @@
 #include "clients/study/session/trial_run.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "clients/study/plan/device_gate.h"
-#include "clients/study/session/study_folder.h"
 #include "clients/study/report/trials.h"
-#include "clients/study/session/trial_events.h"
-#include "clients/study/session/trial_recorder.h"
-#include "clients/study/session/undo.h"
-#include "common/runtime/clock.h"
+#include "clients/study/session/journal.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/recording/recording_writer.h"
+#include "common/recording/stream_recorder.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timer.h"
+#include "common/stream/response.h"
+#include "common/wire/wire.h"
 
 namespace footing::study {
+
+void Anticipation::Add(const Sight& frame) {
+  const bool now_commanded = frame.commanded == frame.wanted;
+  const bool now_ahead = frame.to_mark_m > 0;
+  if (now_ahead && !ahead_) answered_ = now_commanded;  // A new approach.
+  if (!now_ahead && ahead_) {
+    line_ns_ = frame.host_ns;
+    const bool in_force = commanded_ || frame.running == frame.wanted;
+    if (!in_force) {
+      command_ns_ = 0;
+      answered_ = false;
+    }
+  }
+  if (now_commanded && !commanded_ && (now_ahead || !answered_)) {
+    command_ns_ = frame.host_ns;
+    answered_ = true;
+  }
+  commanded_ = now_commanded;
+  ahead_ = now_ahead;
+}
+
+std::optional<double> Anticipation::seconds() const {
+  if (command_ns_ == 0 || line_ns_ == 0) return std::nullopt;
+  return NanosecondsToSeconds(line_ns_ - command_ns_);
+}
+
+bool TrialTracker::Add(const stream::TrialState& frame) {
+  if (frame.trial != trial_) {
+    replaced_ = replaced_ || begun();  // Before the first frame of its own it is that of another.
+    return false;
+  }
+  state_ = frame;
+  return true;
+}
+
+bool TrialTracker::over() const {
+  return finished() || replaced_ || state_.progress.phase == stream::TrialPhase::kStopped;
+}
+
+std::string TrialTracker::Outcome(const std::string& reason) const {
+  return finished() ? "finished" : reason;
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+using records::EventKind;
+
+/// Of the task with that name; kUnspecified: the track has none.
+stream::Gait WantedGait(const stream::Track& track, const std::string& task) {
+  for (const stream::TrackTask& one : track.tasks) {
+    if (one.name == task) return one.after;
+  }
+  return stream::Gait::kUnspecified;
+}
+
+}  // namespace
+
+TrialEvents::TrialEvents(SessionContext& context, Servers& servers, std::string id)
+    : context_(context), servers_(servers), id_(std::move(id)), tracker_(id_) {}
+
+TrialEvents::~TrialEvents() {
+  servers_.set_on_frame(nullptr);
+  servers_.set_on_event(nullptr);
+}
+
+void TrialEvents::Begin() {
+  servers_.set_on_event([this](const v1::Event& event) { OnEvent(event); });
+  servers_.set_on_frame([this](const SimulationFrame& frame) { OnFrame(frame); });
+}
+
+void TrialEvents::OnFrame(const SimulationFrame& frame) {
+  if (ended_) return;
+  const stream::TrialState& trial = frame.trial;
+  const std::string shown = tracker_.state().instruction;
+  if (!tracker_.Add(trial)) return;
+  if (trial.progress.phase == stream::TrialPhase::kRunning && trial.progress.on_track) {
+    heading_.Add(trial.progress.heading_error_rad);
+  }
+  const stream::TaskPhase task = trial.progress.task_phase;
+  if (task == stream::TaskPhase::kAhead || task == stream::TaskPhase::kDue) {
+    anticipation_.Add({.host_ns = frame.host_ns,
+                       .to_mark_m = trial.to_mark_m,
+                       .commanded = frame.commanded_gait,
+                       .running = frame.gait,
+                       .wanted = WantedGait(servers_.track(), trial.task)});
+  }
+  if (!trial.instruction.empty() && trial.instruction != shown) {
+    context_.console.Print("Task for the participant: " + trial.instruction);
+  }
+}
+
+void TrialEvents::OnEvent(const v1::Event& event) {
+  if (event.kind() == v1::Event::KIND_CORRECTION && event.failure().trial() == id_) {
+    OnCorrection(event.failure());
+  }
+  if (ended_) return;
+  // Responses do not name a trial; while nothing has begun they belong to none.
+  if (event.kind() == v1::Event::KIND_RESPONSE && tracker_.begun()) OnResponse(event.response());
+  if (event.kind() == v1::Event::KIND_FALL) heading_.SetUpright(false);
+  if (event.kind() == v1::Event::KIND_PUT_BACK) heading_.SetUpright(true);
+  if (event.kind() == v1::Event::KIND_FALL && event.failure().trial() == id_) OnFailure(event);
+}
+
+/// By this program or by another console.
+void TrialEvents::OnCorrection(const v1::Failure& failure) {
+  Append(failure.withdrawn() ? EventKind::kFailureUndone : EventKind::kFailureRestored,
+         {{"trial", id_}, {"failure", failure.number()}});
+  context_.console.Print("failure " + std::to_string(failure.number()) +
+                         (failure.withdrawn() ? " undone" : " restored"));
+}
+
+void TrialEvents::OnFailure(const v1::Event& event) {
+  const v1::Failure& failure = event.failure();
+  const char* kind = stream::Name(static_cast<stream::FailureCause>(failure.cause()));
+  Append(EventKind::kFailure, {{"trial", id_},
+                               {"failure", failure.number()},
+                               {"kind", kind},
+                               {"trial_time_s", failure.trial_time_s()},
+                               {"distance_m", failure.distance_m()},
+                               {"lateral_offset_m", failure.lateral_offset_m()},
+                               {"heading_error_rad", failure.heading_error_rad()},
+                               {"host_ns", event.host_ns()}});
+  context_.console.Print("failure " + std::to_string(failure.number()) + ": " + kind + ", " +
+                         text::Fixed(failure.trial_time_s(), 1) + " s");
+}
+
+void TrialEvents::OnResponse(const v1::ResponseStages& response) {
+  const stream::ResponseStages stamps = wire::FromProto(response);
+  ordered_json stages = ordered_json::object();
+  for (const stream::ResponseStage& stage : stream::ResponseTimes(stamps)) {
+    stages[stage.name] = stage.ms;
+  }
+  if (stages.empty()) return;
+  Append(EventKind::kResponse, {{"trial", id_},
+                                {"from", stream::Name(stamps.from)},
+                                {"to", stream::Name(stamps.to)},
+                                {"stages_ms", std::move(stages)}});
+}
+
+void TrialEvents::Append(EventKind kind, ordered_json fields) {
+  auto written = context_.journal.Append(kind, std::move(fields));
+  if (!written && written_) written_ = std::move(written);
+}
+
+ordered_json TrialEvents::Figures() const {
+  const stream::TrialProgress& progress = tracker_.state().progress;
+  ordered_json fields = {{"time_s", progress.time_s},
+                         {"distance_m", progress.distance_m},
+                         {"failed_attempts", stream::Total(progress.failures)},
+                         {"operator_put_backs", progress.operator_put_backs}};
+  const double oscillation_rad = heading_.StandardDeviation();
+  if (std::isfinite(oscillation_rad)) fields["heading_oscillation_rad"] = oscillation_rad;
+  if (tracker_.state().task.empty()) return fields;
+  fields["task_done"] = progress.task_phase == stream::TaskPhase::kDone;
+  // Of a task that was never done there is nothing to say.
+  const auto anticipation_s = anticipation_.seconds();
+  if (fields["task_done"] && anticipation_s) fields["anticipation_s"] = *anticipation_s;
+  return fields;
+}
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -282,6 +449,191 @@ Result<std::string> RunTrial(SessionContext& context, Servers& servers, const Ac
 
 Result<void> PlaceOnTrack(Servers& servers, const std::string& id, const plan::Phase& phase) {
   return servers.Call(StartCommand(id, phase));
+}
+
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr auto kFlushPeriod = std::chrono::milliseconds(400);  // Half of kLongestUnwrittenNs.
+constexpr double kFirstTickS = 5;
+constexpr double kCaughtUpS = 1;
+
+}  // namespace
+
+class TrialRecorder::Implementation {
+ public:
+  Implementation(Console& console, recording::RecordingWriter writer)
+      : writer_(std::move(writer)), flush_(console.io()), io_(console.io()) {}
+
+  ~Implementation() {
+    for (const auto& server : servers_) server->Stop();
+  }
+
+  Result<void> Describe(const Options& options, const mcap::TextMap& marks) {
+    if (const auto done = writer_.AddMetadata("trial", marks); !done) return done;
+    for (const auto& [name, text] : options.attachments) {
+      const auto done = writer_.Attach(name, "application/json", text, clock::MonotonicNs());
+      if (!done) return done;
+    }
+    return recording::DescribeRecording(writer_, "footing-study", options.version,
+                                        options.addresses);
+  }
+
+  void Link(const transport::Address& address) {
+    recording::ServerRecorderOptions server;
+    server.address = address;
+    server.client_name = "footing-study";
+    server.on_written = [this](Result<void> written) { Keep(std::move(written)); };
+    servers_.push_back(
+        std::make_unique<recording::ServerRecorder>(io_, writer_, names_, std::move(server)));
+  }
+
+  void Start() {
+    for (const auto& server : servers_) server->Start();
+    FlushLater();
+  }
+
+  bool Flowing() const {
+    return !written_ || std::all_of(servers_.begin(), servers_.end(), [](const auto& server) {
+      return server->recorder().ticks() > 1;
+    });
+  }
+
+  bool Has(std::int64_t host_ns) const {
+    return !written_ || std::all_of(servers_.begin(), servers_.end(), [&](const auto& server) {
+      return server->recorder().last_host_ns() >= host_ns;
+    });
+  }
+
+  void Keep(Result<void> written) {
+    if (!written && written_) written_ = std::move(written);
+  }
+
+  void FlushLater() {
+    flush_.expires_after(kFlushPeriod);
+    flush_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      if (writer_.pending() && written_) Keep(writer_.Flush());
+      FlushLater();
+    });
+  }
+
+  Result<void> Finish(const mcap::TextMap& outcome) {
+    flush_.cancel();
+    for (const auto& server : servers_) {
+      server->Stop();
+      Keep(server->End());
+    }
+    if (!written_) return written_;
+    if (const auto done = writer_.AddMetadata("trial_outcome", outcome); !done) return done;
+    return writer_.Finish();
+  }
+
+  recording::RecordingWriter writer_;
+  recording::ServerNames names_;
+  std::vector<std::unique_ptr<recording::ServerRecorder>> servers_;
+  Result<void> written_;
+  timer::Timer flush_;
+  asio::io_context& io_;
+};
+
+TrialRecorder::TrialRecorder(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+TrialRecorder::~TrialRecorder() = default;
+
+Result<std::unique_ptr<TrialRecorder>> TrialRecorder::Begin(Console& console, Options options,
+                                                            const mcap::TextMap& marks) {
+  recording::WriterSettings settings;
+  settings.library = "footing-study " + options.version;
+  auto writer = recording::RecordingWriter::Create(options.path, settings);
+  if (!writer) return writer.error();
+  auto own = std::make_unique<Implementation>(console, std::move(*writer));
+  if (const auto done = own->Describe(options, marks); !done) return done.error();
+  for (const transport::Address& address : options.addresses) own->Link(address);
+  own->Start();
+  return std::unique_ptr<TrialRecorder>(new TrialRecorder(std::move(own)));
+}
+
+Result<void> TrialRecorder::AwaitFirst(Console& console) const {
+  const Implementation& own = *implementation_;
+  const Waited waited = console.RunUntil([&] { return own.Flowing(); }, kFirstTickS);
+  if (waited == Waited::kInterrupted) return Interrupted();
+  if (waited == Waited::kTimeUp) {
+    return NoDevice("nothing comes to record in " + own.writer_.path() +
+                    "; are both servers running?");
+  }
+  return own.written_;
+}
+
+const Result<void>& TrialRecorder::written() const { return implementation_->written_; }
+
+Waited TrialRecorder::CatchUp(Console& console, std::int64_t host_ns) const {
+  return console.RunUntil([&] { return implementation_->Has(host_ns); }, kCaughtUpS);
+}
+
+Result<void> TrialRecorder::Finish(const mcap::TextMap& outcome) {
+  return implementation_->Finish(outcome);
+}
+
+namespace {
+
+constexpr double kCorrectedWithinS = 2;
+
+Result<void> Withdraw(Servers& servers, std::uint64_t number) {
+  v1::Command command;
+  command.mutable_correct_failure()->set_failure(number);
+  command.mutable_correct_failure()->set_reason("undone by the experimenter");
+  return servers.Call(std::move(command));
+}
+
+std::vector<records::Failure> FailuresOf(const SessionContext& context, const std::string& trial) {
+  return records::FailuresOf(records::Collect(context.journal.events()), trial);
+}
+
+bool Counts(const SessionContext& context, const std::string& trial, std::uint64_t number) {
+  for (const records::Failure& one : FailuresOf(context, trial)) {
+    if (one.number == number) return !one.undone;
+  }
+  return false;
+}
+
+}  // namespace
+
+Result<void> UndoFailure(SessionContext& context, Servers& servers, const std::string& trial,
+                         std::uint64_t number) {
+  const std::string text = "failure " + std::to_string(number);
+  if (!Counts(context, trial, number)) {
+    context.console.Print(trial + " has no " + text + " that counts");
+    return {};
+  }
+  if (servers.frame().trial.trial != trial) {
+    context.console.Print(text + " undone");
+    return context.journal.Append(records::EventKind::kFailureUndone,
+                                  {{"trial", trial}, {"failure", number}});
+  }
+  const auto sent = Withdraw(servers, number);
+  if (context.console.interrupted()) return Interrupted();
+  if (!sent) {
+    context.console.Print(sent.error().message);
+    return {};
+  }
+  const Waited waited =
+      context.console.RunUntil([&] { return !Counts(context, trial, number); }, kCorrectedWithinS);
+  if (waited == Waited::kInterrupted) return Interrupted();
+  if (waited == Waited::kTimeUp) {
+    context.console.Print("footing-sim has not confirmed the correction of " + text);
+  }
+  return {};
+}
+
+Result<void> UndoNewest(SessionContext& context, Servers& servers, const std::string& trial) {
+  const std::vector<records::Failure> failures = FailuresOf(context, trial);
+  for (auto one = failures.rbegin(); one != failures.rend(); ++one) {
+    if (!one->undone) return UndoFailure(context, servers, trial, one->number);
+  }
+  context.console.Print("no failure to undo");
+  return {};
 }
 
 }  // namespace footing::study

@@ -1,6 +1,12 @@
 #include "clients/view/app/feed.h"
 
-#include "clients/view/app/translate.h"
+#include <chrono>
+#include <csignal>
+#include <utility>
+
+#include <boost/asio/post.hpp>
+
+#include "clients/view/app/recorded_show.h"
 #include "common/runtime/clock.h"
 
 namespace footing::view {
@@ -101,6 +107,171 @@ void Feed::Start() {
 
 void Feed::Stop() {
   for (Source& source : sources_) source.client->Stop();
+}
+
+namespace {
+
+using State = scene::CameraPreview::State;
+
+constexpr std::chrono::seconds kDialEvery(1);
+
+}  // namespace
+
+PreviewLink::PreviewLink(boost::asio::io_context& io, transport::Address address,
+                         OnChange on_change)
+    : io_(io), address_(std::move(address)), on_change_(std::move(on_change)), again_(io) {
+  shown_.address = address_.Text();
+}
+
+void PreviewLink::Start() {
+  if (run_) return;
+  run_ = std::make_shared<const int>(0);
+  Dial();
+}
+
+void PreviewLink::Stop() {
+  if (!run_) return;
+  run_.reset();
+  again_.cancel();
+  if (socket_) socket_->Close();
+  socket_.reset();
+  shown_.picture.reset();
+  Show(State::kNone, "");
+}
+
+void PreviewLink::Show(State state, const std::string& why) {
+  shown_.state = state;
+  shown_.why = why;
+  on_change_(shown_);
+}
+
+void PreviewLink::Dial() {
+  transport::Dial(io_, address_, [this, run = run_](Result<transport::Socket> dialled) {
+    if (run != run_) return;
+    if (!dialled) return Lose(State::kAbsent, dialled.error().message);
+    reader_ = preview::PreviewReader();
+    socket_.emplace(std::move(dialled).value());
+    Show(State::kWaiting, "");
+    Read();
+  });
+}
+
+void PreviewLink::Read() {
+  socket_->plain().async_read_some(
+      boost::asio::buffer(bytes_),
+      [this, run = run_](const boost::system::error_code& error, std::size_t count) {
+        if (run != run_) return;
+        if (!error) return TakeBytes(count);
+        const bool refused = shown_.state == State::kRefused;
+        Lose(refused ? State::kRefused : State::kAbsent,
+             refused ? shown_.why : address_.Text() + ": it has ended");
+      });
+}
+
+void PreviewLink::TakeBytes(std::size_t count) {
+  reader_.Add({bytes_.data(), count});
+  for (;;) {
+    auto next = reader_.Next();
+    if (!next) return Lose(State::kRefused, next.error().message);
+    if (!*next) return Read();
+    if (auto* const picture = std::get_if<preview::Picture>(&**next)) {
+      shown_.picture = std::make_shared<const preview::Picture>(std::move(*picture));
+      Show(State::kShown, "");
+    } else {
+      Show(State::kRefused, std::get<preview::Refusal>(**next).why);
+    }
+  }
+}
+
+/// The last picture stays, with its age, until there is a newer one.
+void PreviewLink::Lose(State state, const std::string& why) {
+  if (socket_) socket_->Close();
+  socket_.reset();
+  Show(state, why);
+  again_.expires_after(kDialEvery);
+  again_.async_wait([this, run = run_](const boost::system::error_code& error) {
+    if (!error && run == run_) Dial();
+  });
+}
+
+namespace {
+
+// Four seconds of ticks: a picture that takes longer loses some, which nobody sees.
+constexpr std::size_t kQueuedTicks = 1024;
+constexpr char kSensors[] = "footingd";
+
+}  // namespace
+
+Background::Background(const Options& options)
+    : signals_(io_, SIGINT, SIGTERM),
+      updates_(kQueuedTicks),
+      feed_(io_, options,
+            {[this](scene::Update update) { updates_.Push(std::move(update)); },
+             [this](int source, const scene::LinkReport& report) {
+               links_[static_cast<std::size_t>(source)]->Write(report);
+             }}),
+      preview_link_(io_, options.camera.address,
+                    [this](const scene::CameraPreview& preview) { preview_.Write(preview); }) {
+  for (const scene::LinkReport& report : Feed::InitialReports(options)) {
+    links_.push_back(std::make_unique<exchange::Latest<scene::LinkReport>>(report));
+  }
+  signals_.async_wait([this](const boost::system::error_code& error, int) {
+    if (!error) stop_.Raise();
+  });
+  thread_ = std::thread([this] { RunOnIoThread(); });
+  WantPreview(options.camera.corner || options.camera.alone);
+}
+
+void Background::RunOnIoThread() {
+  feed_.Start();
+  io_.run();
+}
+
+Background::~Background() {
+  boost::asio::post(io_, [this] {
+    feed_.Stop();
+    preview_link_.Stop();
+    signals_.cancel();
+    io_.stop();
+  });
+  thread_.join();
+}
+
+void Background::SendTo(const std::string& server_id, v1::Command command) {
+  boost::asio::post(
+      io_, [this, server_id, command = std::move(command)] { feed_.SendTo(server_id, command); });
+}
+
+void Background::WantPreview(bool wanted) {
+  if (std::exchange(preview_wanted_, wanted) == wanted) return;
+  boost::asio::post(io_, [this, wanted] {
+    if (wanted) {
+      preview_link_.Start();
+    } else {
+      preview_link_.Stop();
+    }
+  });
+}
+
+void Background::Drain(scene::Show& show, PoseCalibration* calibration) {
+  std::vector<scene::LinkReport>& reports = show.model().links;
+  reports.resize(links_.size());
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    links_[i]->Refresh();
+    reports[i] = links_[i]->Front();
+  }
+  preview_.Refresh();
+  show.model().observed.camera = preview_.Front();
+  scene::Update update;
+  while (updates_.Pop(update)) {
+    const bool of_sensors = reports[static_cast<std::size_t>(update.source)].server_id == kSensors;
+    if (calibration != nullptr && of_sensors) calibration->Take(update);
+    show.Take(update, clock::MonotonicNs());
+  }
+  if (calibration != nullptr) {
+    calibration->Advance(show.model(),
+                         [this](v1::Command command) { SendTo(kSensors, std::move(command)); });
+  }
 }
 
 }  // namespace footing::view

@@ -1,16 +1,12 @@
 #include <algorithm>
 
-#include "clients/view/app/off_screen_view.h"
 #include "clients/view/app/options.h"
 #include "clients/view/app/pictures.h"
 #include "clients/view/app/play_session.h"
-#include "clients/view/app/play_view.h"
-#include "clients/view/app/subjects.h"
-#include "clients/view/app/text_view.h"
 #include "clients/view/app/window.h"
 #include "common/cli/cli.h"
+#include "common/net/address.h"
 #include "common/runtime/log.h"
-#include "common/net/address_or_default.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "clients/view/render/hud.h"
-#include "clients/view/scene/align.h"
+#include "clients/view/scene/timeline.h"
 #include "common/net/address.h"
 #include "footing/v1/command.pb.h"
 

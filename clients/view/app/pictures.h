@@ -1,11 +1,12 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <string>
 #include <utility>
 
-#include "clients/view/render/image.h"
+#include <sys/types.h>
+
+#include "clients/view/app/options.h"
+#include "clients/view/render/target.h"
 #include "common/base/result.h"
 
 namespace footing::view {
@@ -51,5 +52,10 @@ class PictureSink {
   int to_film_ = -1;  ///< The socket that ffmpeg reads.
   pid_t film_ = -1;   ///< Its process.
 };
+
+/// Draws without any display: one picture options.at_s seconds after the first data (or after the
+/// start, while no server answers: then it shows what the viewer waits for), or a folder of
+/// numbered ones.
+Result<void> RunOffScreen(const Options& options);
 
 }  // namespace footing::view

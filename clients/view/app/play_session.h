@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "clients/view/app/options.h"
 #include "clients/view/app/recorded_show.h"
-#include "clients/view/scene/align.h"
-#include "clients/view/scene/play_head.h"
+#include "clients/view/render/hud.h"
+#include "clients/view/render/screen.h"
+#include "clients/view/scene/timeline.h"
+#include "common/base/result.h"
 
 namespace footing::view {
 
@@ -56,5 +59,47 @@ FileAndTrial SplitTrial(const std::string& text);
 
 /// "start", "finish", "wall".
 Result<timeline::Alignment> AlignmentNamed(const std::string& name);
+
+/// Plays in the window, until it is closed, Ctrl-C or options.seconds. A recording that is over
+/// stays at its last state.
+Result<void> RunPlayWindow(const Options& options, PlaySession& session);
+
+/// Plays options.play: into the window, into pictures, or as text.
+Result<void> RunPlayback(const Options& options);
+
+/// What a person has switched on while a recording plays.
+struct PlayPicture {
+  render::HudOptions hud;
+  bool timeline = true;
+  scene::Orbit orbit = {};
+};
+
+/// As the options ask: for the subject neither panels nor timeline; side by side no columns.
+PlayPicture PictureFor(const Options& options, const PlaySession& session);
+
+/// Draws all sides at the head's position into the bound framebuffer.
+void DrawSession(render::Screen& screen, PlaySession& session, const PlayPicture& picture,
+                 int width, int height);
+
+/// A screen with a world for each side.
+Result<std::unique_ptr<render::Screen>> ScreenFor(const Options& options,
+                                                  const PlaySession& session);
+
+/// Draws options.screenshot at options.at_s, or pictures into options.record from the head on; each
+/// at its exact position, however long it takes.
+Result<void> DrawPlayedPictures(const Options& options, PlaySession& session);
+
+/// The live state in the terminal: one screen redrawn four times a second, or, when standard output
+/// is not a terminal, a line a second. Runs until Ctrl-C or options.seconds.
+Result<void> RunTextView(const Options& options);
+
+/// How often text is written: a terminal's screen, or a line elsewhere.
+inline constexpr double kScreenEveryS = 0.25;
+inline constexpr double kLineEveryS = 1;
+
+/// True where the options and standard output want the redrawn screen, not lines.
+bool WantsScreen(const Options& options);
+/// One screen: clears the terminal first, says last how to leave.
+std::string ScreenText(const std::vector<std::string>& lines);
 
 }  // namespace footing::view

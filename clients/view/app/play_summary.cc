@@ -1,11 +1,13 @@
 #include "clients/view/app/play_summary.h"
 
-#include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
 
-#include "clients/view/app/summary.h"
-#include "clients/view/scene/words.h"
-#include "clients/view/scene/timeline_text.h"
+#include <nlohmann/json.hpp>
+
+#include "clients/view/scene/text.h"
+#include "clients/view/scene/timeline.h"
+#include "common/runtime/clock.h"
 
 namespace footing::view {
 namespace {
@@ -118,6 +120,120 @@ std::string PlayLine(const PlaySession& session) {
     line += "   " + scene::StatusLine(side.show.model(), session.ClockOf(side));
   }
   return line;
+}
+
+namespace {
+
+void AddPose(const scene::PoseTally& tally, nlohmann::ordered_json& summary) {
+  summary["calibrated"] = tally.calibrated();
+  summary["calibrations"] = tally.calibrations();
+  summary["calibrated_frames"] = tally.calibrated_frames();
+  summary["resets"] = tally.resets();
+  summary["mass_kg"] = tally.mass_kg();
+  summary["hands"] = tally.hands_source().empty() ? "none" : tally.hands_source();
+  summary["contact_source"] = tally.contact_source();
+  summary["compared_frames"] = tally.compared();
+  summary["invalid_frames"] = tally.invalid();
+  if (tally.compared() == 0) return;
+  summary["mpjpe_cm"] = tally.mpjpe_cm();
+  summary["mpjpe_root_relative_cm"] = tally.mpjpe_root_relative_cm();
+  summary["wrists_cm"] = tally.wrists_cm();
+  summary["ankles_cm"] = tally.ankles_cm();
+}
+
+nlohmann::ordered_json Failures(const stream::FailureCounts& counts) {
+  nlohmann::ordered_json failures;
+  for (const stream::FailureCause cause : stream::kFailureCauses) {
+    failures[stream::Name(cause)] = stream::CountOf(cause, counts);
+  }
+  return failures;
+}
+
+/// The trial of the first character as of the last frame.
+void AddTrial(const scene::Model& model, nlohmann::ordered_json& summary) {
+  if (model.playout.empty() || model.playout.Newest().characters.empty()) return;
+  const auto& trial = model.playout.Newest().characters.front().trial;
+  if (!trial) return;
+  summary["trial"] = {{"trial", trial->trial},
+                      {"track", trial->track},
+                      {"phase", stream::Name(trial->progress.phase)},
+                      {"time_s", trial->progress.time_s},
+                      {"distance_m", trial->progress.distance_m},
+                      {"failures", Failures(trial->progress.failures)},
+                      {"withdrawn_failures", trial->withdrawn_failures},
+                      {"operator_put_backs", trial->progress.operator_put_backs}};
+}
+
+/// The terrain game as published last.
+void AddGame(const stream::GameState& game, nlohmann::ordered_json& summary) {
+  if (game.phase == stream::GamePhase::kUnspecified) return;
+  nlohmann::ordered_json players = nlohmann::ordered_json::array();
+  for (const stream::GamePlayer& player : game.players) {
+    players.push_back({{"name", player.name}, {"points", player.points}});
+  }
+  std::uint64_t laid = 0, passed = 0;
+  for (const stream::GameRound& round : game.results) {
+    laid += round.segments_laid;
+    passed += round.segments_passed;
+  }
+  summary["game"] = {{"host", game.host},         {"phase", stream::Name(game.phase)},
+                     {"rounds", game.rounds},     {"rounds_begun", game.results.size()},
+                     {"players", players},        {"segments_laid", laid},
+                     {"segments_passed", passed}, {"segments_refused", game.refused}};
+}
+
+/// What the camera showed last.
+void AddCamera(const scene::CameraPreview& camera, nlohmann::ordered_json& summary) {
+  static const std::map<preview::Sight, const char*> kSights{
+      {preview::Sight::kNothing, "nothing"},
+      {preview::Sight::kOther, "other"},
+      {preview::Sight::kChecking, "checking"},
+      {preview::Sight::kSeen, "seen"}};
+  if (camera.state == scene::CameraPreview::State::kNone) return;
+  const std::int64_t now_ns = clock::MonotonicNs();
+  nlohmann::ordered_json spheres = nlohmann::ordered_json::array();
+  if (camera.picture)
+    for (const preview::Sphere& sphere : camera.picture->spheres)
+      spheres.push_back({{"role", stream::Name(sphere.role)},
+                         {"sight", kSights.at(sphere.sight)},
+                         {"confidence", sphere.confidence}});
+  summary["camera"] = {{"frame", camera.picture ? camera.picture->number : 0},
+                       {"age_s", scene::PreviewAgeS(camera, now_ns)},
+                       {"trouble", scene::PreviewTrouble(camera, now_ns)},
+                       {"spheres", spheres}};
+}
+
+}  // namespace
+
+std::string Summary(const scene::Model& model, double seconds) {
+  nlohmann::ordered_json gaits = nlohmann::ordered_json::array();
+  for (const stream::Gait gait : model.tally.GaitsSeen()) gaits.push_back(stream::Name(gait));
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const auto& [name, latencies] : model.tally.response_stages) {
+    stages[name] = latencies.QuantileMs(0.95);
+  }
+  nlohmann::ordered_json summary{
+      {"seconds", seconds},
+      {"frames_published", model.tally.frames_published()},
+      {"frames_received", model.tally.frames()},
+      {"frames_drawn", model.tally.frames_drawn},
+      {"publish_to_view_p50_ms", model.tally.publish_to_view.QuantileMs(0.5)},
+      {"publish_to_view_p99_ms", model.tally.publish_to_view.QuantileMs(0.99)},
+      {"gaits_seen", gaits},
+      {"falls", model.tally.falls()},
+      {"failures", Failures(model.tally.failures())},
+      {"operator_put_backs", model.tally.operator_put_backs()},
+      {"off_track_s", model.tally.off_track_s()},
+      {"distance_m", model.tally.distance_m()},
+      {"responses", model.tally.response_without_contact.count()},
+      {"response_stages_p95_ms", stages},
+      {"response_without_contact_p95_ms", model.tally.response_without_contact.QuantileMs(0.95)},
+      {"simulated", scene::IsSimulated(model)}};
+  AddTrial(model, summary);
+  AddGame(model.game, summary);
+  AddCamera(model.observed.camera, summary);
+  if (model.pose_tally.any()) AddPose(model.pose_tally, summary);
+  return summary.dump();
 }
 
 }  // namespace footing::view

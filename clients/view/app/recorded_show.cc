@@ -4,12 +4,236 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
-#include "clients/view/app/translate.h"
-#include "common/base/time.h"
+#include "clients/view/scene/text.h"
 #include "common/base/units.h"
+#include "common/recording/recording_server.h"
+#include "common/wire/scalar.h"
+#include "common/wire/wire.h"
 
 namespace footing::view {
+namespace {
+
+using playback::PlacedTick;
+using stream::TrialPhase;
+using timeline::TrialMark;
+
+/// Of gait changes, responses or notes.
+constexpr std::size_t kMostInstants = 1'000'000;
+
+stream::FailureCause CauseOf(v1::FailureCause cause) {
+  for (const stream::FailureCause one : stream::kFailureCauses) {
+    if (static_cast<int>(one) == static_cast<int>(cause)) return one;
+  }
+  return stream::FailureCause::kUnspecified;
+}
+
+/// Puts events together; they come by time.
+class MarkCollector {
+ public:
+  explicit MarkCollector(std::int64_t zero_ns) : zero_ns_(zero_ns) {}
+
+  /// A frame's trial: of a recording that begins or ends within one.
+  void OnTrialState(const stream::TrialState& state, std::int64_t time_ns) {
+    if (!scene::ShowsTrial(state)) return;
+    const double at_s = PositionOf(time_ns);
+    if (!Goes(state)) {
+      if (IsOver(state)) return;  // Before the recording began: there is nothing to play.
+      Begin(state, at_s);
+      frame_only_ = true;
+    }
+    TrialMark& trial = marks_.timeline.trials.back();
+    const stream::TrialProgress& progress = state.progress;
+    if (!trial.start_s && progress.phase == TrialPhase::kRunning) {
+      trial.start_s = at_s - progress.time_s;
+    }
+    Take(state, trial);
+  }
+
+  void OnEvent(const v1::Event& event, std::int64_t offset_ns) {
+    if (!IsInstant(event.host_ns())) return;
+    const double at_s = PositionOf(event.host_ns() - offset_ns);
+    switch (event.kind()) {
+      case v1::Event::KIND_TRIAL:
+        return OnTrial(wire::FromProto(event.trial()), at_s);
+      case v1::Event::KIND_TASK:
+        marks_.timeline.tasks.push_back({at_s, event.trial().task()});
+        return;
+      case v1::Event::KIND_FALL:
+        return OnFailure(event, at_s);
+      case v1::Event::KIND_CORRECTION:
+        return OnCorrection(event.failure());
+      default:
+        return;
+    }
+  }
+
+  void OnTick(const PlacedTick& placed) {
+    bool response = false, note = false, change = false;
+    for (const v1::Event& event : placed.tick.events().events()) {
+      too_many_ = too_many_ || IsFull();
+      if (too_many_) return;
+      OnEvent(event, placed.offset_ns);
+      change = change || event.kind() == v1::Event::KIND_GAIT_CHANGED;
+      response = response || event.kind() == v1::Event::KIND_RESPONSE;
+      note = note || (event.kind() != v1::Event::KIND_RESPONSE && !event.text().empty());
+    }
+    if (change) marks_.gait_changes_ns.push_back(placed.time_ns);
+    if (response) marks_.responses_ns.push_back(placed.time_ns);
+    if (note) marks_.notes_ns.push_back(placed.time_ns);
+  }
+
+  bool too_many() const { return too_many_; }
+
+  RecordedMarks Take(std::int64_t last_ns) {
+    timeline::Timeline& line = marks_.timeline;
+    line.end_s = PositionOf(last_ns);
+    const auto earlier = [](const auto& a, const auto& b) { return a.at_s < b.at_s; };
+    std::stable_sort(line.failures.begin(), line.failures.end(), earlier);
+    std::stable_sort(line.tasks.begin(), line.tasks.end(), earlier);
+    for (TrialMark& trial : line.trials) trial.begin_s = std::max(trial.begin_s, 0.0);
+    return std::move(marks_);
+  }
+
+ private:
+  double PositionOf(std::int64_t time_ns) const { return NanosecondsToSeconds(time_ns - zero_ns_); }
+
+  bool IsFull() const {
+    const timeline::Timeline& line = marks_.timeline;
+    const std::size_t instants = std::max(
+        {marks_.gait_changes_ns.size(), marks_.responses_ns.size(), marks_.notes_ns.size()});
+    return std::max({line.trials.size(), line.failures.size(), line.tasks.size()}) >=
+               timeline::kMostMarks ||
+           instants >= kMostInstants;
+  }
+
+  static bool IsOver(const stream::TrialState& state) {
+    return state.progress.phase == TrialPhase::kFinished ||
+           state.progress.phase == TrialPhase::kStopped;
+  }
+
+  static void Take(const stream::TrialState& state, TrialMark& trial) {
+    trial.track = state.track;
+    trial.task = state.task;
+    trial.phase = state.progress.phase;
+    trial.time_s = state.progress.time_s;
+  }
+
+  /// The newest mark has this name.
+  bool Goes(const stream::TrialState& state) const {
+    const auto& trials = marks_.timeline.trials;
+    return !trials.empty() && trials.back().id == state.trial &&
+           trials.back().number == state.number;
+  }
+
+  void Begin(const stream::TrialState& state, double at_s) {
+    TrialMark trial;
+    trial.id = state.trial;
+    trial.number = state.number;
+    trial.begin_s = at_s;
+    marks_.timeline.trials.push_back(trial);
+  }
+
+  /// The event begins a trial. A restarted server gives the same names and numbers again.
+  bool Begins(const stream::TrialState& state, double at_s) const {
+    if (!Goes(state)) return true;
+    const TrialMark& newest = marks_.timeline.trials.back();
+    if (state.progress.phase == TrialPhase::kRunning) return newest.end_s.has_value();
+    if (state.progress.phase != TrialPhase::kReady) return false;
+    const bool announced =
+        frame_only_ && (newest.phase == TrialPhase::kReady || at_s <= newest.begin_s);
+    return !announced;
+  }
+
+  void OnTrial(const stream::TrialState& state, double at_s) {
+    if (!scene::ShowsTrial(state)) return;
+    if (Begins(state, at_s)) Begin(state, at_s);
+    frame_only_ = false;
+    TrialMark& trial = marks_.timeline.trials.back();
+    trial.begin_s = std::min(trial.begin_s, at_s);
+    switch (state.progress.phase) {
+      case TrialPhase::kRunning:
+        trial.start_s = at_s - state.progress.time_s;
+        break;
+      case TrialPhase::kFinished:
+      case TrialPhase::kStopped:
+        if (!trial.start_s && state.progress.time_s > 0) {
+          trial.start_s = at_s - state.progress.time_s;
+        }
+        trial.end_s = at_s;
+        break;
+      case TrialPhase::kReady:
+      case TrialPhase::kUnspecified:
+        break;
+    }
+    Take(state, trial);
+  }
+
+  void OnFailure(const v1::Event& event, double at_s) {
+    const v1::Failure& failure = event.failure();
+    timeline::FailureMark mark;
+    mark.at_s = at_s;
+    mark.number = failure.number();
+    mark.cause = CauseOf(event.failure_cause());
+    mark.trial = failure.trial();
+    mark.trial_time_s = wire::Finite(failure.trial_time_s());
+    mark.distance_m = wire::Finite(failure.distance_m());
+    marks_.timeline.failures.push_back(std::move(mark));
+  }
+
+  void OnCorrection(const v1::Failure& failure) {
+    auto& failures = marks_.timeline.failures;
+    // A restarted server counts from 1 again: the newest one is meant.
+    const auto found = std::find_if(failures.rbegin(), failures.rend(), [&](const auto& mark) {
+      return mark.number == failure.number();
+    });
+    if (found != failures.rend()) found->withdrawn = failure.withdrawn();
+  }
+
+  std::int64_t zero_ns_;
+  bool frame_only_ = false;  ///< The newest trial is known from a frame alone.
+  bool too_many_ = false;    ///< An event was left out.
+  RecordedMarks marks_;
+};
+
+/// The trial of the first character of a frame, into the collector.
+void TakeFrame(const std::optional<PlacedTick>& placed, MarkCollector& collector) {
+  if (!placed || placed->tick.characters().characters_size() == 0) return;
+  const v1::Character& character = placed->tick.characters().characters(0);
+  if (character.has_trial()) {
+    collector.OnTrialState(wire::FromProto(character.trial()), placed->time_ns);
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& PlayedServers() {
+  static const std::vector<std::string> kNames{"footing-sim", "footingd"};
+  return kNames;
+}
+
+Result<playback::SeekableRecording> OpenForPlayback(const std::string& path) {
+  return playback::SeekableRecording::Open(
+      path, PlayedServers(),
+      {"status", "motion", "features", "boards", "skeletons", "track", "characters", "events",
+       "setup", "reference", "game"});
+}
+
+Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording) {
+  MarkCollector collector(recording.first_ns());
+  TakeFrame(recording.LastOf(kPlayedSimulation, "characters", recording.first_ns(), true),
+            collector);
+  recording.Visit(kPlayedSimulation, "events",
+                  [&collector](const PlacedTick& placed) { collector.OnTick(placed); });
+  if (collector.too_many()) {
+    return InvalidData(recording.path() + ": too many events; at most " +
+                       std::to_string(timeline::kMostMarks) + " failures are read");
+  }
+  TakeFrame(recording.LastOf(kPlayedSimulation, "characters", recording.last_ns()), collector);
+  return collector.Take(recording.last_ns());
+}
+
 namespace {
 
 using playback::PlacedTick;
@@ -195,6 +419,187 @@ void RecordedShow::ReportLinks(std::int64_t time_ns) {
       links.back().why = "the recording has no messages of " + name;
     }
   }
+}
+
+namespace {
+
+constexpr int kMaxCharacters = 8;
+constexpr int kMaxParts = 256;
+
+using wire::Finite;
+
+scene::BodyFoot FootOf(const v1::BodyFoot& from) {
+  return {from.contact(),
+          from.valid(),
+          wire::FromProto(from.position_m()),
+          wire::FromProto(from.variance_m2()),
+          Finite(from.load_n()),
+          from.cop_valid(),
+          wire::FromProto(from.cop_m()),
+          Finite(from.airborne_s())};
+}
+
+scene::BodyState BodyOf(const v1::BodyState& from) {
+  scene::BodyState body;
+  body.subject = from.subject();
+  body.mode = from.mode();
+  body.calibrated = from.calibrated();
+  body.calibration_progress = Finite(from.calibration_progress());
+  body.calibration_restarts = from.calibration_restarts();
+  body.mass_kg = Finite(from.mass_kg());
+  body.height_m = Finite(from.height_m());
+  body.lag_s = Finite(from.lag_s());
+  body.momentum_valid = from.momentum_valid();
+  body.com_variance_m2 = wire::FromProto(from.com_variance_m2());
+  body.angular_momentum_kgm2ps = wire::FromProto(from.angular_momentum_kgm2ps());
+  for (int i = 0; i < std::min(from.feet_size(), 2); ++i) {
+    body.feet[static_cast<std::size_t>(i)] = FootOf(from.feet(i));
+  }
+  body.resets = from.resets();
+  for (int i = 0; i < std::min(from.link_sd_m_size(), kMaxParts); ++i) {
+    body.link_sd_m.push_back(Finite(from.link_sd_m(i)));
+  }
+  body.note = from.note();
+  body.solve_us = Finite(from.solve_us());
+  for (int i = 0; i < std::min(from.hands_seen_size(), 2); ++i) {
+    body.hands_seen[static_cast<std::size_t>(i)] = from.hands_seen(i);
+  }
+  body.hands_source = from.hands_source();
+  body.contact_source = from.contact_source();
+  return body;
+}
+
+scene::ReferencePose ReferenceOf(const v1::ReferencePose& from, std::int64_t received_ns,
+                                 std::int64_t offset_ns) {
+  scene::ReferencePose reference;
+  reference.received_ns = received_ns;
+  reference.sampled_ns = from.sampled_ns() - offset_ns;
+  for (int i = 0; i < std::min(from.positions_m_size(), kMaxParts); ++i) {
+    reference.positions_m.push_back(wire::FromProto(from.positions_m(i)));
+    reference.parents.push_back(i < from.parents_size() ? from.parents(i) : -1);
+  }
+  return reference;
+}
+
+scene::CharacterPose CharacterOf(const v1::Character& from) {
+  scene::CharacterPose pose;
+  pose.character = from.character();
+  pose.rig = from.rig();
+  pose.valid = from.valid();
+  for (int i = 0; i < std::min(from.links_size(), kMaxParts); ++i) {
+    pose.links.push_back(wire::FromProto(from.links(i)));
+  }
+  for (int i = 0; i < std::min(from.contacts_size(), kMaxParts); ++i) {
+    pose.contacts.push_back(wire::FromProto(from.contacts(i)));
+  }
+  pose.com_m = wire::FromProto(from.com_m());
+  pose.com_velocity_mps = wire::FromProto(from.com_velocity_mps());
+  pose.gait = wire::FromProto(from.gait());
+  pose.phase = from.gait().phase();
+  pose.interface = wire::FromProto(from.interface());
+  pose.simulated_input = from.simulated_input();
+  if (from.has_body()) pose.body = BodyOf(from.body());
+  if (from.has_trial()) pose.trial = wire::FromProto(from.trial());
+  return pose;
+}
+
+scene::WorldFrame FrameOf(const v1::CharacterFrame& from, std::uint64_t sequence) {
+  scene::WorldFrame frame;
+  frame.sequence = sequence;
+  frame.step = from.step();
+  frame.time_s = Finite(from.time_s());
+  frame.overruns = from.overruns();
+  for (int i = 0; i < std::min(from.characters_size(), kMaxCharacters); ++i) {
+    frame.characters.push_back(CharacterOf(from.characters(i)));
+  }
+  return frame;
+}
+
+scene::NoteKind KindOf(v1::Event::Kind kind) {
+  switch (kind) {
+    case v1::Event::KIND_FALL:
+      return scene::NoteKind::kFall;
+    case v1::Event::KIND_PUT_BACK:
+      return scene::NoteKind::kPutBack;
+    case v1::Event::KIND_GAIT_CHANGED:
+      return scene::NoteKind::kGaitChanged;
+    case v1::Event::KIND_RESPONSE:
+      return scene::NoteKind::kResponse;
+    case v1::Event::KIND_STREAM_LOST:
+      return scene::NoteKind::kStreamLost;
+    case v1::Event::KIND_STREAM_BACK:
+      return scene::NoteKind::kStreamBack;
+    default:  // Kinds that a newer server adds are shown by their text.
+      return scene::NoteKind::kOther;
+  }
+}
+
+void AddSensors(const v1::Tick& tick, std::int64_t offset_ns, scene::Update& update) {
+  if (tick.has_status()) {
+    update.devices.emplace();
+    for (const auto& device : tick.status().devices()) {
+      update.devices->push_back(wire::FromProto(device));
+    }
+  }
+  for (const auto& sample : tick.motion().samples()) {
+    update.motion.push_back(wire::FromProto(sample));
+    update.motion.back().received_ns -= offset_ns;
+  }
+  for (const auto& rig : tick.features().rigs()) update.features.push_back(wire::FromProto(rig));
+  for (const auto& sample : tick.boards().samples()) {
+    update.boards.push_back(wire::FromProto(sample));
+  }
+  for (const auto& sample : tick.hands().samples()) {
+    update.hands.push_back(wire::FromProto(sample));
+  }
+  if (tick.has_setup()) {
+    update.setup.emplace();
+    for (const auto& rig : tick.setup().rigs()) update.setup->push_back(wire::FromProto(rig));
+  }
+  if (tick.reference().poses_size() > 0) {
+    update.reference =
+        ReferenceOf(*tick.reference().poses().rbegin(), update.received_ns, offset_ns);
+  }
+}
+
+void AddSimulation(const v1::Tick& tick, scene::Update& update) {
+  if (tick.has_skeletons()) {
+    update.skeletons.emplace();
+    for (const auto& skeleton : tick.skeletons().skeletons()) {
+      update.skeletons->push_back(wire::FromProto(skeleton));
+    }
+  }
+  if (tick.has_track()) update.track = wire::FromProto(tick.track());
+  if (tick.has_study()) update.study = wire::FromProto(tick.study());
+  if (tick.has_game()) update.game = wire::FromProto(tick.game());
+  if (tick.has_characters()) update.frame = FrameOf(tick.characters(), tick.sequence());
+  for (const auto& event : tick.events().events()) {
+    update.notes.push_back(
+        {KindOf(event.kind()), event.host_ns(), event.text(), wire::FromProto(event.response())});
+  }
+}
+
+}  // namespace
+
+scene::Update Translate(const v1::Tick& tick, int source, std::int64_t received_ns,
+                        std::int64_t offset_ns) {
+  scene::Update update;
+  update.source = source;
+  update.live = !tick.snapshot() && !tick.refilled();
+  update.host_ns = tick.host_ns() - offset_ns;
+  update.received_ns = received_ns;
+  AddSensors(tick, offset_ns, update);
+  AddSimulation(tick, update);
+  return update;
+}
+
+scene::Update TranslateNotice(const v1::Notice& notice, int source, std::int64_t received_ns) {
+  scene::Update update;
+  update.source = source;
+  update.live = false;
+  update.received_ns = received_ns;
+  update.notes.push_back({scene::NoteKind::kServer, received_ns, notice.text(), {}});
+  return update;
 }
 
 }  // namespace footing::view

@@ -2,14 +2,38 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "clients/view/app/recorded_marks.h"
-#include "clients/view/scene/show.h"
+#include "clients/view/scene/stage.h"
+#include "clients/view/scene/timeline.h"
+#include "clients/view/scene/update.h"
+#include "common/base/result.h"
 #include "common/recording/seekable_recording.h"
+#include "footing/v1/session.pb.h"
 
 namespace footing::view {
+
+/// The servers of a recording that are shown, in the order of the default addresses.
+const std::vector<std::string>& PlayedServers();
+inline constexpr std::size_t kPlayedSimulation = 0;
+inline constexpr std::size_t kPlayedSensors = 1;
+
+/// Opens a recording for playback: those servers, with the channels that the viewer shows.
+Result<playback::SeekableRecording> OpenForPlayback(const std::string& path);
+
+/// What its events say: trials, failures, tasks, in seconds from its first tick; and when the gait
+/// changed and what was last said, which a seek needs.
+struct RecordedMarks {
+  timeline::Timeline timeline;
+  std::vector<std::int64_t> gait_changes_ns;  ///< By time, as the others.
+  std::vector<std::int64_t> responses_ns;     ///< Of the ticks that brought one.
+  std::vector<std::int64_t> notes_ns;         ///< Of the ticks that brought a text to read.
+};
+
+/// Reads all events once. InvalidData when there are more than the limits of timeline.h allow.
+Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording);
 
 /// The scene of a recording at any of its instants.
 ///
@@ -57,5 +81,13 @@ class RecordedShow {
   std::vector<std::int64_t> newest_ns_;  ///< Of each server's ticks so far.
   std::uint64_t track_version_ = 0;      ///< Counts on over seeks: another one is another track.
 };
+
+/// A tick as plain structs. Stamps of the server's clock are moved by -offset_ns onto the viewer's
+/// own. Numbers that are not finite become 0 on the way.
+scene::Update Translate(const v1::Tick& tick, int source, std::int64_t received_ns,
+                        std::int64_t offset_ns);
+
+/// What slows a server or this session, as a note.
+scene::Update TranslateNotice(const v1::Notice& notice, int source, std::int64_t received_ns);
 
 }  // namespace footing::view

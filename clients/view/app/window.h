@@ -1,7 +1,16 @@
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "clients/view/app/options.h"
+#include "clients/view/scene/model.h"
+#include "clients/view/scene/update.h"
 #include "common/base/result.h"
+#include "common/guide/set_up.h"
+#include "footing/v1/command.pb.h"
 
 namespace footing::view {
 
@@ -11,5 +20,46 @@ bool HasDisplay();
 /// The window, until it is closed, Ctrl-C or options.seconds. Fails at once, before anything is
 /// shown, when no window can be opened.
 Result<void> RunWindow(const Options& options);
+
+/// The item "camera" of the guided setup on the viewer's screen: the same steps as those of
+/// footing-ctl setup --only camera. The pose goes into the camera file, the result to footingd.
+class PoseCalibration {
+ public:
+  /// The sphere is the first one of the file.
+  static Result<PoseCalibration> Open(const std::string& camera_file);
+
+  /// The one that the options ask for, begun; nothing where they do not.
+  static Result<std::optional<PoseCalibration>> OfOptions(const std::string& camera_file);
+
+  /// From the first mark on.
+  void Begin();
+  /// Its screen goes away; nothing is stored.
+  void End();
+  bool is_shown() const { return set_up_.has_value(); }
+
+  /// A tick of footingd's.
+  void Take(const scene::Update& update);
+  /// Goes on with what came since the last call, and puts what is to be seen into the model.
+  /// `record` gets the result, for footingd.
+  void Advance(scene::Model& model, const std::function<void(v1::Command)>& record);
+
+ private:
+  explicit PoseCalibration(guide::SetUpOptions options) : options_(std::move(options)) {}
+  void TakeProgress(guide::Progress progress);
+  guide::Answer Store(const guide::Action& action) const;
+
+  guide::SetUpOptions options_;
+  std::optional<guide::SetUp> set_up_;
+  guide::Recent recent_;
+  std::vector<guide::Answer> answers_;
+  std::int64_t now_ns_ = 0, advanced_ns_ = 0;  ///< footingd's clock.
+  scene::Calibration shown_;
+};
+
+/// The commands that put each subject file in place, in their order.
+Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>& files);
+
+/// Forgets the T-pose of the first character.
+v1::Command TPoseCommand();
 
 }  // namespace footing::view

@@ -1,27 +1,21 @@
 #include "clients/view/render/hud.h"
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "clients/view/render/board_panel.h"
-#include "clients/view/render/body_panel.h"
-#include "clients/view/render/calibration_panel.h"
-#include "clients/view/render/camera_panel.h"
-#include "clients/view/render/character_panel.h"
-#include "clients/view/render/device_panel.h"
-#include "clients/view/render/game_panel.h"
+#include "clients/view/render/device_panels.h"
+#include "clients/view/render/game_panels.h"
 #include "clients/view/render/hud_layout.h"
-#include "clients/view/render/interface_panel.h"
-#include "clients/view/render/labels.h"
-#include "clients/view/render/layout_panel.h"
-#include "clients/view/render/lost_panel.h"
-#include "clients/view/render/overlay.h"
-#include "clients/view/render/participant_panel.h"
+#include "clients/view/render/person_panels.h"
 #include "clients/view/render/strip_panel.h"
-#include "clients/view/render/study_panel.h"
-#include "clients/view/render/t_pose_panel.h"
-#include "clients/view/render/trial_panel.h"
-#include "clients/view/scene/game_text.h"
-#include "clients/view/scene/live_keys.h"
+#include "clients/view/render/study_panels.h"
+#include "clients/view/scene/model.h"
+#include "clients/view/scene/text.h"
+#include "clients/view/scene/timeline.h"
+#include "common/base/units.h"
 
 namespace footing::render {
 namespace {
@@ -161,6 +155,329 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   }
   if (options.frozen) DrawFrozen(p, notes);
   DrawLiveKeys(p, content, options, size);
+}
+
+namespace {
+
+constexpr double kNoteS = 3;
+constexpr double kNoteFadeS = 1;
+
+/// A rounded banner of as many lines as the text needs, from the top of `space`.
+void DrawBanner(const Paint& p, Box& space, const std::string& text, ImFont* font, ImU32 fill,
+                ImU32 ink) {
+  const float s = p.scale, side = 16 * s, line_height = font->FontSize + 3 * s;
+  const auto lines = p.Wrapped(font, text, space.width() - 2 * side);
+  float width = 0;
+  for (const std::string& line : lines) width = std::max(width, p.WidthOf(font, line));
+  const float middle = (space.low.x + space.high.x) / 2;
+  const float height = line_height * static_cast<float>(lines.size()) + 10 * s;
+  const ImVec2 low(middle - width / 2 - side, space.low.y);
+  p.list->AddRectFilled(low, {middle + width / 2 + side, low.y + height}, fill, 14 * s);
+  float y = low.y + 5 * s;
+  for (const std::string& line : lines) {
+    p.WriteCentred(font, {middle, y}, ink, line);
+    y += line_height;
+  }
+  space.low.y += height + 6 * s;
+}
+
+/// What each connection waits for, in lines of at most that width, the first one apart.
+std::vector<std::vector<std::string>> WaitingTexts(const Paint& p, const scene::Model& model,
+                                                   ImFont* font, float width) {
+  std::vector<std::vector<std::string>> texts;
+  for (const scene::LinkReport& link : model.links) {
+    std::vector<std::string> lines;
+    for (const std::string& line : scene::WaitingLines(link)) {
+      for (std::string& part : p.Wrapped(font, line, width)) lines.push_back(std::move(part));
+    }
+    if (!lines.empty()) texts.push_back(std::move(lines));
+  }
+  return texts;
+}
+
+}  // namespace
+
+void DrawWaiting(const Paint& p, const scene::Model& model, const Box& box) {
+  const float s = p.scale, side = 26 * s;
+  const auto texts = WaitingTexts(p, model, p.fonts.text, box.width() - 2 * side);
+  float width = std::min(380 * s, box.width()), height = 70 * s;
+  for (const auto& lines : texts) {
+    for (const std::string& line : lines) {
+      width = std::max(width, p.WidthOf(p.fonts.text, line) + 2 * side);
+    }
+    height += (14 + 22 * static_cast<float>(lines.size())) * s;
+  }
+  const ImVec2 low((box.low.x + box.high.x - width) / 2,
+                   std::max(box.low.y, box.low.y + 0.38f * (box.height() - height)));
+  const Box in = p.Panel({low, {low.x + width, low.y + height}});
+  const float left = low.x + side;
+  p.Write(p.fonts.heading, {left, in.low.y + 6 * s}, colour::kText, "Nothing to show yet");
+  float y = in.low.y + 48 * s;
+  for (const auto& lines : texts) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      p.Write(p.fonts.text, {left, y}, i == 0 ? colour::kText : colour::kAccent, lines[i]);
+      y += 22 * s;
+    }
+    y += 14 * s;
+  }
+}
+
+void DrawWaitingLines(const Paint& p, const scene::Model& model, Box& space) {
+  const float s = p.scale, line_height = 17 * s;
+  for (const auto& lines : WaitingTexts(p, model, p.fonts.small, space.width() - 20 * s)) {
+    float width = 0;
+    for (const std::string& line : lines) width = std::max(width, p.WidthOf(p.fonts.small, line));
+    const float height = line_height * static_cast<float>(lines.size()) + 6 * s;
+    const ImVec2 low(space.low.x, space.high.y - height);
+    p.list->AddRectFilled(low, {low.x + width + 20 * s, space.high.y}, colour::kPanel, 8 * s);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      p.Write(p.fonts.small, {low.x + 10 * s, low.y + 3 * s + line_height * static_cast<float>(i)},
+              colour::kWarning, lines[i]);
+    }
+    space.high.y -= height + 6 * s;
+  }
+}
+
+void DrawKeys(const Paint& p, ImVec2 size, const std::vector<scene::KeyLine>& keys) {
+  const float s = p.scale, first = 104 * s, edge = 10 * s;
+  float width = 340 * s;
+  for (const scene::KeyLine& line : keys) {
+    width = std::max(width, first + p.WidthOf(p.fonts.text, line.what) + 40 * s);
+  }
+  const float height = (70 + 26 * static_cast<float>(keys.size())) * s;
+  const ImVec2 low(std::max(0.0f, size.x - width - edge), std::max(0.0f, (size.y - height) / 2));
+  const Box box{low, {low.x + width, low.y + height}};
+  p.list->AddRectFilled(box.low, box.high, colour::kBehindKeys, 10 * s);
+  const Box in = p.Panel(box);
+  p.Write(p.fonts.strong, {in.low.x + 8 * s, in.low.y + 2 * s}, colour::kText, "Keys");
+  float y = in.low.y + 36 * s;
+  for (const auto& [key, what] : keys) {
+    p.Write(p.fonts.strong, {in.low.x + 8 * s, y}, colour::kSecond, key);
+    p.Write(p.fonts.text, {in.low.x + first, y}, colour::kText, what);
+    y += 26 * s;
+  }
+}
+
+void DrawTitle(const Paint& p, const std::string& title, const std::string& over, Box& space) {
+  DrawBanner(p, space, title, p.fonts.strong, colour::kPanel, colour::kText);
+  if (!over.empty()) {
+    DrawBanner(p, space, over, p.fonts.strong, colour::kText, IM_COL32(20, 20, 20, 255));
+  }
+}
+
+void DrawSimulated(const Paint& p, const Box& row) {
+  Box space = row;
+  DrawBanner(p, space, "SIMULATED INPUT", p.fonts.strong, colour::kSecond,
+             IM_COL32(40, 26, 0, 255));
+}
+
+void DrawReplay(const Paint& p, const scene::Model& model, std::int64_t now_ns, Box& space) {
+  if (!model.replay.At(now_ns)) return;
+  DrawBanner(p, space, scene::ReplayLine(model.replay.FromFallS(now_ns)), p.fonts.strong,
+             colour::kAccent, IM_COL32(20, 20, 20, 255));
+}
+
+void DrawNote(const Paint& p, const scene::Model& model, std::int64_t now_ns, Box& space) {
+  if (!model.last.note) return;
+  const double age_s = NanosecondsToSeconds(now_ns - model.last.note->received_ns);
+  if (age_s > kNoteS) return;
+  const auto opacity = static_cast<float>(std::clamp((kNoteS - age_s) / kNoteFadeS, 0.0, 1.0));
+  const scene::NoteKind kind = model.last.note->kind;
+  const auto ink = kind == scene::NoteKind::kFall     ? colour::kBad
+                   : kind == scene::NoteKind::kServer ? colour::kWarning
+                                                      : colour::kText;
+  DrawBanner(p, space, model.last.note->text, p.fonts.text, Faded(colour::kPanel, 0.7f * opacity),
+             Faded(ink, opacity));
+}
+
+void DrawFrozen(const Paint& p, Box& space) {
+  DrawBanner(p, space, "frozen", p.fonts.small, colour::kText, IM_COL32(20, 20, 20, 255));
+}
+
+namespace {
+
+// In units.
+constexpr float kEdge = 18;
+constexpr float kRow = 22;
+constexpr float kLane = 16, kLaneGap = 4;
+constexpr float kNarrow = 900;  // The legend has a row of its own there.
+constexpr float kLegendGap = 14;
+
+constexpr ImU32 kJumpColour = IM_COL32(178, 140, 255, 255);
+constexpr ImU32 kTransitionColour = IM_COL32(244, 130, 206, 255);
+constexpr ImU32 kTaskColour = IM_COL32(84, 226, 214, 255);
+
+float LanesHeight(std::size_t lanes) {
+  const auto count = static_cast<float>(std::max<std::size_t>(1, lanes));
+  return count * kLane + (count - 1) * kLaneGap;
+}
+
+/// A sign of the legend and what it stands for.
+struct Sign {
+  ImU32 colour = 0;
+  std::string text;
+};
+
+std::vector<Sign> LegendOf(const timeline::Timeline& line) {
+  std::vector<Sign> signs;
+  for (const stream::FailureCause cause : stream::kFailureCauses) {
+    const auto count = std::count_if(
+        line.failures.begin(), line.failures.end(),
+        [cause](const auto& failure) { return failure.cause == cause && !failure.withdrawn; });
+    if (count == 0) continue;
+    signs.push_back(
+        {ColourOf(cause), std::string(stream::Name(cause)) + " " + std::to_string(count)});
+  }
+  const bool withdrawn = std::any_of(line.failures.begin(), line.failures.end(),
+                                     [](const auto& failure) { return failure.withdrawn; });
+  if (withdrawn) signs.push_back({colour::kFaint, "withdrawn"});
+  if (!line.trials.empty()) {
+    signs.push_back({colour::kGood, "start"});
+    signs.push_back({colour::kText, "finish"});
+  }
+  if (!line.tasks.empty()) signs.push_back({kTaskColour, "task done"});
+  return signs;
+}
+
+float WidthOf(const Paint& p, const std::vector<Sign>& signs) {
+  float width = 0;
+  for (const Sign& sign : signs) {
+    width += p.WidthOf(p.fonts.small, sign.text) + (12 + kLegendGap) * p.scale;
+  }
+  return width;
+}
+
+void DrawLegend(const Paint& p, ImVec2 at, const std::vector<Sign>& signs) {
+  const float s = p.scale;
+  for (const Sign& sign : signs) {
+    p.list->AddRectFilled({at.x, at.y + 3 * s}, {at.x + 7 * s, at.y + 13 * s}, sign.colour, 2 * s);
+    at.x += 12 * s;
+    at.x += p.Write(p.fonts.small, at, colour::kFaint, sign.text) + kLegendGap * s;
+  }
+}
+
+/// A triangle on the lane's upper edge.
+void DrawTask(const Paint& p, const Box& lane, float x) {
+  const float s = p.scale;
+  p.list->AddTriangleFilled({x - 4 * s, lane.low.y - 3 * s}, {x + 4 * s, lane.low.y - 3 * s},
+                            {x, lane.low.y + 5 * s}, kTaskColour);
+}
+
+void DrawTrial(const Paint& p, const Box& lane, const Box& groove, const timeline::Timeline& whole,
+               const timeline::TrialMark& trial, double until_s) {
+  const float s = p.scale;
+  const auto column = [&](double at_s) { return ColumnOf(groove, whole, at_s); };
+  const float from = column(trial.begin_s), to = column(until_s);
+  p.list->AddRectFilled({from, lane.low.y}, {to, lane.high.y}, Faded(colour::kText, 0.14f));
+  if (trial.start_s) {
+    const float running_to = trial.end_s ? column(*trial.end_s) : to;
+    p.list->AddRectFilled({column(*trial.start_s), lane.low.y}, {running_to, lane.high.y},
+                          Faded(colour::kText, 0.26f));
+    p.list->AddRectFilled({column(*trial.start_s) - s, lane.low.y - 2 * s},
+                          {column(*trial.start_s) + s, lane.high.y + 2 * s}, colour::kGood);
+  }
+  if (trial.end_s) {
+    p.list->AddRectFilled({column(*trial.end_s) - s, lane.low.y - 2 * s},
+                          {column(*trial.end_s) + s, lane.high.y + 2 * s}, colour::kText);
+  }
+  const std::string name = timeline::NameOf(trial);
+  const float left = std::max(from, groove.low.x) + 5 * s;
+  if (left + p.WidthOf(p.fonts.tiny, name) + 4 * s > to) return;
+  p.Write(p.fonts.tiny, {left, lane.low.y + 1.5f * s}, colour::kText, name);
+}
+
+void DrawLane(const Paint& p, const Box& lane, const Box& groove, const timeline::Timeline& whole,
+              const timeline::Timeline& line) {
+  const float s = p.scale;
+  p.list->AddRectFilled({ColumnOf(groove, whole, line.begin_s), lane.low.y},
+                        {ColumnOf(groove, whole, line.end_s), lane.high.y}, colour::kGroove, 3 * s);
+  for (std::size_t i = 0; i < line.trials.size(); ++i) {
+    const bool last = i + 1 == line.trials.size();
+    DrawTrial(p, lane, groove, whole, line.trials[i],
+              last ? line.end_s : line.trials[i + 1].begin_s);
+  }
+  for (const timeline::FailureMark& failure : line.failures) {
+    const float x = ColumnOf(groove, whole, failure.at_s);
+    p.list->AddRectFilled({x - 1.5f * s, lane.low.y}, {x + 1.5f * s, lane.high.y},
+                          failure.withdrawn ? colour::kFaint : ColourOf(failure.cause));
+  }
+  for (const timeline::TaskMark& task : line.tasks) {
+    DrawTask(p, lane, ColumnOf(groove, whole, task.at_s));
+  }
+}
+
+}  // namespace
+
+ImU32 ColourOf(stream::FailureCause cause) {
+  switch (cause) {
+    case stream::FailureCause::kSimulation:
+      return colour::kBad;
+    case stream::FailureCause::kCurve:
+      return colour::kSecond;
+    case stream::FailureCause::kJump:
+      return kJumpColour;
+    case stream::FailureCause::kStraightness:
+      return colour::kAccent;
+    case stream::FailureCause::kTransition:
+      return kTransitionColour;
+    case stream::FailureCause::kUnspecified:
+      break;
+  }
+  return colour::kFaint;
+}
+
+TimelineBoxes LayOutTimeline(ImVec2 size, float scale, std::size_t lanes) {
+  const bool narrow = size.x / scale < kNarrow;
+  const float height = (narrow ? 2 : 1) * kRow + LanesHeight(lanes) + 22;
+  TimelineBoxes boxes;
+  boxes.bar = {{0, size.y - height * scale}, size};
+  const float low = size.y - (LanesHeight(lanes) + 10) * scale;
+  boxes.groove = {{kEdge * scale, low}, {size.x - kEdge * scale, size.y - 10 * scale}};
+  return boxes;
+}
+
+float ColumnOf(const Box& groove, const timeline::Timeline& whole, double at_s) {
+  const double length_s = whole.length_s();
+  const double share = length_s > 0 ? (at_s - whole.begin_s) / length_s : 0;
+  return groove.low.x + static_cast<float>(std::clamp(share, 0.0, 1.0)) * groove.width();
+}
+
+double PositionAt(const Box& groove, const timeline::Timeline& whole, float column) {
+  const float share = groove.width() > 0 ? (column - groove.low.x) / groove.width() : 0;
+  return whole.begin_s + whole.length_s() * static_cast<double>(std::clamp(share, 0.0f, 1.0f));
+}
+
+void DrawTimeline(const Paint& p, const TimelineBoxes& boxes, const TimelineContent& content) {
+  const float s = p.scale;
+  const Box& groove = boxes.groove;
+  // Nothing was drawn below it.
+  p.list->AddRectFilled(boxes.bar.low, boxes.bar.high, IM_COL32(16, 22, 30, 255));
+  const std::vector<Sign> legend = LegendOf(content.whole);
+  const bool narrow = boxes.bar.width() / s < kNarrow;
+  const float top = boxes.bar.low.y + 5 * s;
+  const float legend_width = WidthOf(p, legend);
+  if (narrow) {
+    DrawLegend(p, {groove.low.x, top + kRow * s}, legend);
+  } else {
+    DrawLegend(p, {groove.high.x - legend_width + kLegendGap * s, top}, legend);
+  }
+  const float position_width = p.Write(p.fonts.strong, {groove.low.x, top - s}, colour::kText,
+                                       timeline::PositionText(content.head));
+  const float left = groove.low.x + position_width + 24 * s;
+  const float space = groove.high.x - left - (narrow ? 0 : legend_width + 10 * s);
+  if (space > 60 * s) {
+    p.Write(p.fonts.small, {left, top + s}, colour::kFaint,
+            p.Fitting(p.fonts.small, content.trial, space));
+  }
+  float y = groove.low.y;
+  for (const timeline::Timeline* const line : content.lanes) {
+    DrawLane(p, {{groove.low.x, y}, {groove.high.x, y + kLane * s}}, groove, content.whole, *line);
+    y += (kLane + kLaneGap) * s;
+  }
+  const float x = ColumnOf(groove, content.whole, content.head.at_s);
+  p.list->AddRectFilled({x - s, groove.low.y - 4 * s}, {x + s, groove.high.y + 4 * s},
+                        colour::kText);
+  p.list->AddCircleFilled({x, groove.low.y - 4 * s}, 5 * s, colour::kText);
 }
 
 }  // namespace footing::render

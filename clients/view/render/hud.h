@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "clients/view/render/hud_layout.h"
+#include "clients/view/render/paint.h"
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/stage.h"
+#include "clients/view/scene/timeline.h"
 
 namespace footing::render {
 
@@ -52,5 +55,48 @@ HudBoxes BoxesOf(const HudContent& content, const HudOptions& options, ImVec2 si
 
 /// All panels over the picture.
 void DrawHud(const Paint& paint, const HudContent& content, const HudOptions& options, ImVec2 size);
+
+/// What the viewer waits for and how to start it; shown until something comes.
+void DrawWaiting(const Paint& paint, const scene::Model& model, const Box& box);
+/// A few small lines for each connection that is not live, from the bottom of `space` upwards;
+/// takes away from `space` what they fill.
+void DrawWaitingLines(const Paint& paint, const scene::Model& model, Box& space);
+/// The list of keys, at the right: the figure in the middle stays in sight.
+void DrawKeys(const Paint& paint, ImVec2 size, const std::vector<scene::KeyLine>& keys);
+/// What is shown of several recordings, and how it stands. A banner as those below.
+void DrawTitle(const Paint& paint, const std::string& title, const std::string& over, Box& space);
+/// "SIMULATED INPUT" in the middle of a row.
+void DrawSimulated(const Paint& paint, const Box& row);
+/// Which moment of the last fall is shown again; nothing while none is. This and what follows is a
+/// banner from the top of `space`, and takes away from `space` what it fills.
+void DrawReplay(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
+/// The last event, fading after 3 s.
+void DrawNote(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
+/// That the picture is frozen.
+void DrawFrozen(const Paint& paint, Box& space);
+
+/// What the timeline at the bottom of the picture shows.
+struct TimelineContent {
+  const timeline::Timeline& whole;               ///< Of all recordings.
+  std::vector<const timeline::Timeline*> lanes;  ///< One a recording.
+  timeline::PlayHead head;
+  std::string trial;  ///< What goes on at the head.
+};
+
+/// Where it lies, in pixels.
+struct TimelineBoxes {
+  Box bar;
+  Box groove;  ///< From the timeline's beginning to its end.
+};
+TimelineBoxes LayOutTimeline(ImVec2 size, float scale, std::size_t lanes);
+
+/// The column of pixels of a position, within the groove, and back.
+float ColumnOf(const Box& groove, const timeline::Timeline& whole, double at_s);
+double PositionAt(const Box& groove, const timeline::Timeline& whole, float column);
+
+ImU32 ColourOf(stream::FailureCause cause);
+
+/// Position, trials with start and finish, failures coloured by kind with a legend, tasks.
+void DrawTimeline(const Paint& paint, const TimelineBoxes& boxes, const TimelineContent& content);
 
 }  // namespace footing::render

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "clients/view/render/paint.h"
+#include "clients/view/scene/stage.h"
 
 namespace footing::render {
 
@@ -33,5 +34,10 @@ struct HudBoxes {
 };
 
 HudBoxes LayOut(ImVec2 size, float scale, const HudNeeds& needs);
+
+/// The picture's labels beside their points, none over another; one that would stand under a panel
+/// is left out.
+void DrawLabels(const Paint& paint, const scene::Picture& picture, const HudBoxes& boxes,
+                ImVec2 size);
 
 }  // namespace footing::render

@@ -1,14 +1,38 @@
 #include "clients/view/render/screen.h"
 
-#include <backends/imgui_impl_opengl3.h>
-#include <imgui.h>
-
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
 #include "clients/view/render/gl.h"
+#include "clients/view/render/hud.h"
+#include "clients/view/scene/model.h"
+#include "clients/view/scene/timeline.h"
 
 namespace footing::render {
+
+ImTextureID PreviewTexture::Take(const std::shared_ptr<const preview::Picture>& picture) {
+  if (!picture) return nullptr;
+  if (picture != shown_) {
+    shown_ = picture;
+    glBindTexture(GL_TEXTURE_2D, texture_.name());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture->width, picture->height, 0, GL_RGB,
+                 GL_UNSIGNED_BYTE, picture->rgb.data());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  }
+  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.name()));
+}
+
 namespace {
 
 // The panels move by themselves: ImGui's own clock only has to run.
@@ -85,6 +109,128 @@ void Screen::Draw(const HudContent& content, const HudOptions& options, int widt
   paint.camera_picture = preview_.Take(model.observed.camera.picture);
   DrawHud(paint, content, options, ImGui::GetIO().DisplaySize);
   EndPanels();
+}
+
+namespace {
+
+Error NoContext(const std::string& what) {
+  return Failure(what + " (EGL error " + std::to_string(eglGetError()) +
+                 "): drawing without a display needs Mesa; try: apt install libegl1 "
+                 "libgl1-mesa-dri");
+}
+
+}  // namespace
+
+Result<OffScreen> OffScreen::Create() {
+  EGLDisplay display =
+      eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
+    return NoContext("no EGL display without a screen");
+  }
+  if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) return NoContext("EGL has no OpenGL");
+  const std::array<EGLint, 5> wanted{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
+                                     EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0) {
+    return NoContext("EGL has no fitting configuration");
+  }
+  const std::array<EGLint, 7> version{EGL_CONTEXT_MAJOR_VERSION,
+                                      3,
+                                      EGL_CONTEXT_MINOR_VERSION,
+                                      3,
+                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                      EGL_NONE};
+  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, version.data());
+  if (context == EGL_NO_CONTEXT) return NoContext("no OpenGL 3.3 context");
+  if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE) {
+    eglDestroyContext(display, context);
+    return NoContext("the OpenGL context cannot be used");
+  }
+  return OffScreen(display, context);
+}
+
+OffScreen::~OffScreen() {
+  if (display_ == nullptr) return;
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(display_, context_);
+  eglTerminate(display_);
+}
+
+namespace {
+
+/// Moves everything that was drawn since the list had `from` corners.
+void MoveDrawn(ImDrawList& list, int from, ImVec2 by) {
+  for (int i = from; i < list.VtxBuffer.Size; ++i) {
+    list.VtxBuffer[i].pos.x += by.x;
+    list.VtxBuffer[i].pos.y += by.y;
+  }
+}
+
+/// The keys of playback, with those of what is played.
+std::vector<scene::KeyLine> PlayKeyLines(const std::vector<PlayedView>& views) {
+  std::vector<scene::KeyLine> lines{{"?", "show or hide this list"},
+                                    {"H", "hide or show the panels"},
+                                    {"F11", "full screen, or a window again"}};
+  const bool person =
+      !views.empty() && scene::EngineOf(views.front().content.model) == scene::Engine::kPerson;
+  if (person) {
+    lines.push_back({"O", "the true pose beside the body, or over it"});
+  } else {
+    lines.push_back({"F", "force arrows at the feet"});
+  }
+  for (const auto& [key, what] : timeline::kPlayKeyHelp) lines.push_back({key, what});
+  lines.push_back({"Esc, Q", "quit"});
+  return lines;
+}
+
+}  // namespace
+
+TimelineBoxes TimelineBoxesOf(const Screen& screen, int width, int height, std::size_t lanes) {
+  const ImVec2 size(static_cast<float>(width), static_cast<float>(height));
+  return LayOutTimeline(size, screen.ScaleOf(size), lanes);
+}
+
+void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const HudOptions& options,
+                  const TimelineContent* line, int width, int height) {
+  const auto count = static_cast<int>(views.size());
+  int bar_height = 0;
+  if (line != nullptr) {
+    const Box bar = TimelineBoxesOf(screen, width, height, line->lanes.size()).bar;
+    bar_height = static_cast<int>(std::ceil(bar.height()));
+  }
+  const int high = std::max(1, height - bar_height);
+  const auto left_of = [&](int i) { return i * width / count; };
+  for (int i = 0; i < count; ++i) {
+    const auto& content = views[static_cast<std::size_t>(i)].content;
+    screen.world(static_cast<std::size_t>(i))
+        .Draw(content.picture, content.model.track, content.model.track_version,
+              left_of(i + 1) - left_of(i), high, left_of(i), bar_height);
+  }
+  const Paint paint = screen.BeginPanels(width, height);
+  for (int i = 0; i < count; ++i) {
+    const PlayedView& view = views[static_cast<std::size_t>(i)];
+    const ImVec2 size(static_cast<float>(left_of(i + 1) - left_of(i)), static_cast<float>(high));
+    const int before = paint.list->VtxBuffer.Size;
+    HudOptions shown = options;
+    shown.title = view.title;
+    shown.over = view.note;
+    shown.keys = false;
+    DrawHud(paint, view.content, shown, size);
+    MoveDrawn(*paint.list, before, {static_cast<float>(left_of(i)), 0});
+    if (i == 0) continue;
+    const auto x = static_cast<float>(left_of(i));
+    paint.list->AddRectFilled({x - paint.scale, 0}, {x + paint.scale, static_cast<float>(high)},
+                              IM_COL32(16, 22, 30, 255));
+  }
+  if (line != nullptr) {
+    DrawTimeline(paint, TimelineBoxesOf(screen, width, height, line->lanes.size()), *line);
+  }
+  if (options.keys) {
+    DrawKeys(paint, {static_cast<float>(width), static_cast<float>(high)}, PlayKeyLines(views));
+  }
+  screen.EndPanels();
 }
 
 }  // namespace footing::render

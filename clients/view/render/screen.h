@@ -2,14 +2,31 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
+
+#include <imgui.h>
 
 #include "clients/view/render/hud.h"
 #include "clients/view/render/hud_layout.h"
-#include "clients/view/render/preview_texture.h"
+#include "clients/view/render/target.h"
 #include "clients/view/render/world.h"
+#include "common/base/result.h"
+#include "common/camera/preview.h"
 
 namespace footing::render {
+
+/// The camera's picture on the graphics card.
+class PreviewTexture {
+ public:
+  /// Uploads it unless it is the one that is there. Null: there is none.
+  ImTextureID Take(const std::shared_ptr<const preview::Picture>& picture);
+
+ private:
+  Texture texture_;
+  std::shared_ptr<const preview::Picture> shown_;
+};
 
 /// World and panels in one picture. Needs its OpenGL context current in every call; one a process.
 class Screen {
@@ -45,5 +62,39 @@ class Screen {
   Fonts fonts_;
   PreviewTexture preview_;
 };
+
+/// An OpenGL 3.3 core context without any display (EGL, Mesa's surfaceless platform), current on
+/// the thread that made it.
+class OffScreen {
+ public:
+  static Result<OffScreen> Create();
+  OffScreen(OffScreen&& other) noexcept
+      : display_(std::exchange(other.display_, nullptr)),
+        context_(std::exchange(other.context_, nullptr)) {}
+  OffScreen& operator=(OffScreen&&) = delete;
+  OffScreen(const OffScreen&) = delete;
+  ~OffScreen();
+
+ private:
+  OffScreen(void* display, void* context) : display_(display), context_(context) {}
+
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+};
+
+/// One recording as it is shown.
+struct PlayedView {
+  HudContent content;
+  std::string title;  ///< Over the picture; empty: none.
+  std::string note;   ///< "ended"; empty: none.
+};
+
+/// One recording, or two side by side, each with its own camera and panels, over one timeline.
+/// `line` null: without it. For two recordings `screen` has two worlds.
+void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const HudOptions& options,
+                  const TimelineContent* line, int width, int height);
+
+/// Where the timeline of DrawPlayback lies in a picture of that size.
+TimelineBoxes TimelineBoxesOf(const Screen& screen, int width, int height, std::size_t lanes);
 
 }  // namespace footing::render

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "clients/view/render/hud_layout.h"
-#include "clients/view/scene/strip.h"
+#include "clients/view/render/paint.h"
+#include "clients/view/scene/model.h"
 
 namespace footing::render {
 
@@ -13,5 +16,36 @@ PanelHeight StripPanelHeight(const scene::StripSet& strips);
 /// as the box has space for. The curves stand still while nothing comes.
 void DrawStripPanel(const Paint& paint, const Box& box, const scene::StripSet& strips,
                     std::int64_t now_ns);
+
+/// Curves over the last 10 s, with their axes.
+struct Curve {
+  const scene::Strip* strip = nullptr;
+  ImU32 ink = 0;
+  const char* name = "";  ///< For the legend, where a plot has more than one.
+  float width = 1.4f;
+};
+
+/// Curves over one axis.
+struct Plot {
+  const char* title = "";
+  std::string value;        ///< The newest value with its unit.
+  float low = 0, high = 1;  ///< Ends of the axis, in the strips' own unit.
+  double label_factor = 1;  ///< From the strips' own unit to that of the labels.
+  std::vector<Curve> curves;
+  float share = 1;  ///< Of the column's height.
+};
+
+/// Width of the labels to the left of the curves, in units.
+inline constexpr float kAxisWidth = 30;
+/// Height of the labels under a column of plots, in units.
+inline constexpr float kTimeAxisHeight = 14;
+
+/// Plots one under the other over the same stretch of time, which ends at `now_ns`.
+void DrawPlots(const Paint& paint, const Box& box, const std::vector<Plot>& plots,
+               std::int64_t now_ns);
+/// Seconds before the newest instant, from the top of `box`, under a column of plots.
+void DrawTimeAxis(const Paint& paint, const Box& box);
+/// Where that instant stands between the left and the right edge of the curves of a column.
+float PlotX(const Paint& paint, const Box& box, std::int64_t time_ns, std::int64_t now_ns);
 
 }  // namespace footing::render

@@ -1,10 +1,242 @@
 #include "clients/view/render/target.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
 #include <cstddef>
+#include <cstring>
+#include <filesystem>
 #include <utility>
 
+#include <stb_image_write.h>
+
+#include "clients/view/render/world.h"
+
 namespace footing::render {
+namespace {
+
+/// The driver's log of a shader or a program.
+template <typename GetLog>
+std::string DriverLog(GLuint name, GetLog get_log) {
+  std::array<char, 2048> text{};
+  GLsizei length = 0;
+  get_log(name, static_cast<GLsizei>(text.size()), &length, text.data());
+  return {text.data(), static_cast<std::size_t>(length)};
+}
+
+Result<GLuint> Compile(const std::string& name, GLenum stage, const std::string& text) {
+  const GLuint shader = glCreateShader(stage);
+  const char* source = text.c_str();
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  GLint compiled = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  if (compiled == GL_TRUE) return shader;
+  const std::string words = DriverLog(shader, glGetShaderInfoLog);
+  glDeleteShader(shader);
+  return Failure("the graphics driver cannot compile the shader '" + name + "': " + words);
+}
+
+}  // namespace
+
+Result<Program> Program::Create(const std::string& name, const std::string& vertex_text,
+                                const std::string& fragment_text) {
+  const auto vertex = Compile(name + ".vertex", GL_VERTEX_SHADER, vertex_text);
+  if (!vertex) return vertex.error();
+  const auto fragment = Compile(name + ".fragment", GL_FRAGMENT_SHADER, fragment_text);
+  if (!fragment) return fragment.error();
+  Program program(glCreateProgram());
+  for (const GLuint shader : {*vertex, *fragment}) {
+    glAttachShader(program.program_, shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(program.program_);
+  GLint linked = GL_FALSE;
+  glGetProgramiv(program.program_, GL_LINK_STATUS, &linked);
+  if (linked == GL_TRUE) return program;
+  return Failure("the graphics driver cannot link the shader '" + name +
+                 "': " + DriverLog(program.program_, glGetProgramInfoLog));
+}
+
+Program::~Program() {
+  if (program_ != 0) glDeleteProgram(program_);
+}
+
+void Program::Set(const char* uniform, float value) const { glUniform1f(At(uniform), value); }
+void Program::Set(const char* uniform, int value) const { glUniform1i(At(uniform), value); }
+void Program::Set(const char* uniform, const Eigen::Vector2f& value) const {
+  glUniform2fv(At(uniform), 1, value.data());
+}
+void Program::Set(const char* uniform, const Eigen::Vector3f& value) const {
+  glUniform3fv(At(uniform), 1, value.data());
+}
+void Program::Set(const char* uniform, const Eigen::Matrix4f& value) const {
+  glUniformMatrix4fv(At(uniform), 1, GL_FALSE, value.data());
+}
+void Program::Set(const char* uniform, const std::vector<Eigen::Vector4f>& values) const {
+  if (values.empty()) return;
+  glUniform4fv(At(uniform), static_cast<GLsizei>(values.size()), values.front().data());
+}
+
+namespace {
+
+template <typename T>
+void Fill(GLenum target, const Buffer& buffer, const std::vector<T>& items, GLenum usage) {
+  glBindBuffer(target, buffer.name());
+  glBufferData(target, static_cast<GLsizeiptr>(items.size() * sizeof(T)), items.data(), usage);
+}
+
+void Attribute(GLuint location, GLint size, std::size_t stride, std::size_t offset) {
+  glEnableVertexAttribArray(location);
+  glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
+                        reinterpret_cast<const void*>(offset));
+}
+
+}  // namespace
+
+void StaticMesh::Upload(const scene::RibbonMesh& mesh) {
+  static_assert(sizeof(scene::RibbonVertex) == 40);
+  index_count_ = static_cast<GLsizei>(mesh.indices.size());
+  glBindVertexArray(array_.name());
+  Fill(GL_ARRAY_BUFFER, vertices_, mesh.vertices, GL_STATIC_DRAW);
+  Attribute(0, 3, sizeof(scene::RibbonVertex), 0);
+  Attribute(1, 3, sizeof(scene::RibbonVertex), 12);
+  Attribute(2, 4, sizeof(scene::RibbonVertex), 24);
+  Fill(GL_ELEMENT_ARRAY_BUFFER, indices_, mesh.indices, GL_STATIC_DRAW);
+}
+
+void StaticMesh::Upload(const scene::SkyMesh& mesh) {
+  static_assert(sizeof(scene::SkyVertex) == 24);
+  index_count_ = static_cast<GLsizei>(mesh.indices.size());
+  glBindVertexArray(array_.name());
+  Fill(GL_ARRAY_BUFFER, vertices_, mesh.vertices, GL_STATIC_DRAW);
+  Attribute(0, 3, sizeof(scene::SkyVertex), 0);
+  Attribute(1, 3, sizeof(scene::SkyVertex), 12);
+  Fill(GL_ELEMENT_ARRAY_BUFFER, indices_, mesh.indices, GL_STATIC_DRAW);
+}
+
+void StaticMesh::Draw() const {
+  glBindVertexArray(array_.name());
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+InstancedShape::InstancedShape(const scene::Mesh& mesh, Kind kind)
+    : index_count_(static_cast<GLsizei>(mesh.indices.size())), kind_(kind) {
+  static_assert(sizeof(scene::MeshVertex) == 24 && sizeof(scene::Part) == 96);
+  glBindVertexArray(array_.name());
+  Fill(GL_ARRAY_BUFFER, vertices_, mesh.vertices, GL_STATIC_DRAW);
+  Attribute(0, 3, sizeof(scene::MeshVertex), 0);
+  Attribute(1, 3, sizeof(scene::MeshVertex), 12);
+  Fill(GL_ELEMENT_ARRAY_BUFFER, indices_, mesh.indices, GL_STATIC_DRAW);
+  glBindBuffer(GL_ARRAY_BUFFER, instances_.name());
+  for (GLuint i = 0; i < 6; ++i) {
+    Attribute(2 + i, 4, sizeof(scene::Part), 16 * i);
+    glVertexAttribDivisor(2 + i, 1);
+  }
+}
+
+void InstancedShape::Draw(const Program& program, const std::vector<scene::Part>& instances) {
+  if (instances.empty()) return;
+  glBindVertexArray(array_.name());
+  Fill(GL_ARRAY_BUFFER, instances_, instances, GL_STREAM_DRAW);
+  program.Set("u_kind", static_cast<int>(kind_));
+  glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr,
+                          static_cast<GLsizei>(instances.size()));
+}
+
+PartShapes::PartShapes()
+    : ball_(scene::UnitBall(32, 18), InstancedShape::Kind::kSolid),
+      coarse_ball_(scene::UnitBall(12, 6), InstancedShape::Kind::kSolid),
+      rod_(scene::UnitRod(16), InstancedShape::Kind::kRod),
+      limb_(scene::UnitLimb(16, 4), InstancedShape::Kind::kLimb),
+      box_(scene::UnitBox(), InstancedShape::Kind::kSolid) {}
+
+void PartShapes::Draw(const Program& program, const scene::PartList& parts, bool coarse) {
+  (coarse ? coarse_ball_ : ball_).Draw(program, parts.balls);
+  rod_.Draw(program, parts.rods);
+  limb_.Draw(program, parts.limbs);
+  box_.Draw(program, parts.boxes);
+}
+
+namespace {
+
+constexpr int kShadowPixels = 512;
+
+}  // namespace
+
+ShadowMap::ShadowMap() {
+  glBindTexture(GL_TEXTURE_2D, texture_.name());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowPixels, kShadowPixels, 0, GL_RED, GL_UNSIGNED_BYTE,
+               nullptr);
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  GLint before = 0;
+  glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+}
+
+void ShadowMap::Draw(const Program& program, PartShapes& shapes, const scene::PartList& figures,
+                     const Eigen::Vector3f& centre_m) {
+  GLint before = 0;
+  std::array<GLint, 4> viewport{};
+  glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
+  glGetIntegerv(GL_VIEWPORT, viewport.data());
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glViewport(0, 0, kShadowPixels, kShadowPixels);
+  glDisable(GL_DEPTH_TEST);
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT);
+  program.Use();
+  program.Set("u_centre", centre_m);
+  program.Set("u_span", kMarkSpanM);
+  shapes.Draw(program, figures, true);
+  // The mark's edge is soft: it is read from the smaller copies.
+  glBindTexture(GL_TEXTURE_2D, texture_.name());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+  glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+}
+
+void ShadowMap::Bind() const {
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, texture_.name());
+}
+
+namespace {
+
+constexpr int kJpegQuality = 92;  // Of 100: edges of letters stay clean.
+
+Result<void> Written(int written, const std::string& path) {
+  if (written != 0) return {};
+  return Failure("cannot write the picture " + path + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+Result<void> WritePng(const Image& image, const std::string& path) {
+  errno = 0;
+  return Written(
+      stbi_write_png(path.c_str(), image.width, image.height, 3, image.rgb.data(), 3 * image.width),
+      path);
+}
+
+Result<void> WritePicture(const Image& image, const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending != ".jpg" && ending != ".jpeg") return WritePng(image, path);
+  errno = 0;
+  return Written(
+      stbi_write_jpg(path.c_str(), image.width, image.height, 3, image.rgb.data(), kJpegQuality),
+      path);
+}
+
 namespace {
 
 constexpr int kMaxPixels = 8192;

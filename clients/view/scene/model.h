@@ -8,18 +8,169 @@
 #include <utility>
 #include <vector>
 
-#include "clients/view/scene/anatomy.h"
-#include "clients/view/scene/calibration.h"
-#include "clients/view/scene/camera_preview.h"
-#include "clients/view/scene/fall_replay.h"
-#include "clients/view/scene/hand_signs.h"
-#include "clients/view/scene/playout.h"
-#include "clients/view/scene/pose_tally.h"
-#include "clients/view/scene/strip.h"
+#include "clients/view/scene/camera.h"
+#include "clients/view/scene/part.h"
+#include "clients/view/scene/signs.h"
 #include "clients/view/scene/tally.h"
 #include "clients/view/scene/update.h"
+#include "common/guide/camera_step.h"
+#include "common/stream/setup.h"
 
 namespace footing::scene {
+
+struct Model;
+struct Picture;
+
+/// The guided calibration of where the camera stands, as its screen shows it.
+struct Calibration {
+  std::string rig;
+  std::string file;      ///< The camera file that the pose is written to.
+  std::string prompt;    ///< To the person; empty once there is a result.
+  std::string feedback;  ///< What is seen at the moment.
+  std::optional<guide::MarksState> marks;
+  std::optional<stream::SetupItem> result;
+};
+
+/// The boards from the person's side with the marks on them: those that are done green, the next
+/// one amber and pulsing, with the controller above it where it has to stand; at the end the
+/// residual of each mark, and the camera where it stands.
+void AddCalibration(const Model& model, std::int64_t now_ns, Picture& picture);
+
+/// The prompt, or how it ended.
+std::string CalibrationTitle(const Calibration& calibration);
+/// What is seen, or cause and remedy of a refusal.
+std::string CalibrationDetail(const Calibration& calibration);
+/// "Camera's pose, mark 3 of 10".
+std::string CalibrationProgress(const Calibration& calibration);
+
+/// Keeps what led to the last fall, to be seen again in slow motion.
+///
+/// A fall is a character's count of falls gone up. Its clip begins 5 s before it and ends when the
+/// characters are put back (one moved more than 0.5 m between two frames), 1.5 s after it at the
+/// latest.
+class FallReplay {
+ public:
+  static constexpr double kBeforeS = 5;
+  static constexpr double kAfterS = 1.5;
+  static constexpr double kPace = 0.25;  ///< Seconds of the clip a second of the viewer.
+
+  /// Every frame, in the order of coming. A step back in simulation time means a restarted server:
+  /// what was kept is dropped.
+  void Push(const WorldFrame& frame);
+
+  /// True once a fall has been seen to its end.
+  bool ready() const { return !clip_.empty() && !filling_; }
+  /// Counts the clips that became ready.
+  std::uint64_t clips() const { return clips_; }
+
+  /// From the clip's start, at `now_ns` of the viewer's clock. Does nothing before ready().
+  void Start(std::int64_t now_ns);
+  void Stop() { started_ns_.reset(); }
+
+  /// What to show while a replay runs; nothing before and after it.
+  std::optional<WorldFrame> At(std::int64_t now_ns) const;
+  /// Time of the clip at `now_ns` less that of the fall, s: negative before it.
+  double FromFallS(std::int64_t now_ns) const { return ClipTimeS(now_ns) - fall_s_; }
+
+ private:
+  double ClipTimeS(std::int64_t now_ns) const;
+  void TakeClip(double fall_s);
+
+  std::deque<WorldFrame> recent_;
+  std::deque<WorldFrame> clip_;
+  double fall_s_ = 0;
+  bool filling_ = false;
+  std::uint64_t clips_ = 0;
+  std::optional<std::int64_t> started_ns_;
+};
+
+/// A character whose COM moved further than this between two frames was put back, m.
+inline constexpr double kPutBackM = 0.5;
+
+/// The frame between two others: `share` 0 gives a, 1 gives b. Positions on the line, orientations
+/// on the arc between; what is not a number (gait, phase, touching) is that of a until b is
+/// reached. A character that moved more than 0.5 m between them was put back: it stays at a.
+WorldFrame Between(const WorldFrame& a, const WorldFrame& b, double share);
+
+/// Smooths the arrival of frames: shows the stream one frame interval late, so that there is nearly
+/// always a frame on either side to draw between.
+///
+/// Simulation time runs beside the viewer's clock at the pace of the frame that came with the least
+/// delay within the last 1.5 s; if frames stop, the newest one stands.
+class Playout {
+ public:
+  /// A frame that the socket gave at `received_ns`. A step back in simulation time means a
+  /// restarted server: what was kept is dropped.
+  void Push(WorldFrame frame, std::int64_t received_ns);
+
+  bool empty() const { return frames_.empty(); }
+  const WorldFrame& Newest() const { return frames_.back().frame; }
+  /// When the newest frame came, on the viewer's clock; 0 without one.
+  std::int64_t newest_ns() const { return frames_.empty() ? 0 : frames_.back().received_ns; }
+  /// What to show at `now_ns`. Not to be called while empty.
+  WorldFrame At(std::int64_t now_ns) const;
+
+ private:
+  struct Timed {
+    WorldFrame frame;
+    std::int64_t received_ns = 0;
+  };
+  double ShownTime(std::int64_t now_ns) const;
+
+  std::deque<Timed> frames_;
+};
+
+/// How much of the past the sliding strips show.
+inline constexpr std::int64_t kStripNs = 10'000'000'000;
+/// An older value is no longer the present one.
+inline constexpr std::int64_t kCurrentNs = 500'000'000;
+
+/// The instant up to which sliding curves are drawn: now, but where nothing has come since
+/// `newest_ns` for longer than kCurrentNs they stand still, as the scene does.
+std::int64_t ShownTime(std::int64_t newest_ns, std::int64_t now_ns);
+
+/// One curve over the last 10 s.
+class Strip {
+ public:
+  struct Point {
+    std::int64_t time_ns = 0;  ///< On the viewer's own clock.
+    float value = 0;
+    bool joined = true;  ///< A line leads here from the point before.
+  };
+
+  /// A value that is not finite is left out. Points come in the order of time.
+  void Add(std::int64_t time_ns, double value);
+  /// The value is unknown at `time_ns`: the next point starts a new line.
+  void Break(std::int64_t time_ns);
+  const std::deque<Point>& points() const { return points_; }
+
+ private:
+  void DropBefore(std::int64_t time_ns);
+
+  std::deque<Point> points_;
+  bool broken_ = true;
+};
+
+/// The curves of one controller.
+struct DeviceStrips {
+  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+  bool simulated = false;
+  Strip magnitude_mps2;  ///< Of the raw specific force.
+  Strip filtered_x_mps2, filtered_y_mps2, filtered_z_mps2;
+  Strip moving;  ///< 0 or 1.
+  Strip frequency_hz;
+  Strip amplitude_mps2;
+  Strip roll_rad, pitch_rad;
+};
+
+/// All curves; at most 16 devices and 8 rigs.
+struct StripSet {
+  std::map<std::pair<int, std::uint32_t>, DeviceStrips> devices;  ///< By {source, device}.
+  std::map<std::string, Strip> phases_rad;                        ///< By rig.
+  std::int64_t newest_ns = 0;                                     ///< When the last values came.
+
+  void Add(const Update& update);
+};
 
 /// One board's last 10 s.
 struct BoardTrace {
@@ -123,5 +274,32 @@ struct Stance {
   double left_share = 0.5;  ///< 0 to 1.
 };
 Stance StanceOf(const Model& model);
+
+/// What the connected footing-sim runs: the biped, a person on boards, or nothing that has come
+/// yet.
+enum class Engine { kUnknown, kBiped, kPerson };
+Engine EngineOf(const Model& model);
+
+/// What decides which keys of a live view do something.
+struct KeyContext {
+  Engine engine = Engine::kUnknown;
+  bool has_subjects = false;  ///< Files for the key N were named.
+  bool calibrates = false;    ///< A camera file for the key C was named.
+  bool may_command = false;   ///< footing-sim is connected, on this machine.
+};
+KeyContext ContextOf(const Model& model, bool has_subjects, bool calibrates);
+
+/// A line of the list of keys.
+struct KeyLine {
+  std::string key;
+  std::string what;
+};
+
+/// The keys of a live view that do something now, in the order of the list.
+std::vector<KeyLine> LiveKeyLines(const KeyContext& context);
+
+/// Why a key does nothing now, and what to do; empty where it does what the list says. `key` is a
+/// capital letter.
+std::string WhyNoKey(char key, const KeyContext& context);
 
 }  // namespace footing::scene

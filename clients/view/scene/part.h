@@ -1,10 +1,33 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "common/body/landmarks.h"
+#include "common/stream/character.h"
+#include "common/stream/game.h"
+
 namespace footing::scene {
+
+/// Which of a skeleton's links is what of a person.
+struct Anatomy {
+  bool person = false;  ///< All that a figure is drawn from is there.
+  body::Landmarks landmarks{};
+  std::vector<int> parents;
+  std::vector<float> radii_m;  ///< Half of each link's suggested size; 0 where it has none.
+};
+
+/// By the links' names; `person` is false where they are not a person's.
+Anatomy FindAnatomy(const stream::Skeleton& skeleton);
+
+/// True when a body of those parents has the same tree, so that the names fit it, too.
+bool Fits(const Anatomy& anatomy, const std::vector<int>& parents);
 
 enum class Shape : std::uint32_t {
   kBall,  ///< Unit sphere about the origin.
@@ -60,5 +83,88 @@ Eigen::Matrix4f Ellipsoid(const Eigen::Vector3f& centre, const Eigen::Matrix3f& 
 
 /// The colour that a screen shows for these sRGB bytes, e.g. Rgb(0xC96F4A).
 Colour Rgb(std::uint32_t hex);
+
+/// Colours of a figure.
+struct PersonLook {
+  Colour skin, shirt, trousers, left_shoe, right_shoe, visor;
+};
+
+/// A dressed mannequin: left shoe blue, right shoe amber.
+PersonLook MannequinLook();
+/// All of one colour: a silhouette, or what is compared with.
+PersonLook PlainLook(const Colour& colour);
+
+/// Adds a figure whose joints are at `p_m` (W, one a link). Where the links are not a person's, or
+/// not as many, a limb is drawn along each of them. Joints that are the less certain (`sd_m`, may
+/// be empty) are the redder.
+void AddPerson(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& p_m,
+               const std::vector<double>& sd_m, const PersonLook& look, PartList& parts);
+
+/// Limbs along the links of any tree.
+void AddLimbs(const std::vector<int>& parents, const std::vector<float>& radii_m,
+              const std::vector<Eigen::Vector3d>& p_m, const Colour& colour, PartList& parts);
+
+/// One foot of a reconstructed body.
+struct BodyFoot {
+  bool contact = false;
+  bool valid = false;
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();
+  double load_n = 0;
+  bool cop_valid = false;
+  Eigen::Vector3d cop_m = Eigen::Vector3d::Zero();
+  double airborne_s = 0;
+};
+
+/// How a reconstructed body is estimated and how well: character.proto says what each field means.
+struct BodyState {
+  std::string subject;
+  std::string mode;
+  bool calibrated = false;
+  double calibration_progress = 0;  ///< 0 to 1.
+  std::uint32_t calibration_restarts = 0;
+  double mass_kg = 0;
+  double height_m = 0;
+  double lag_s = 0;
+  bool momentum_valid = false;
+  Eigen::Vector3d com_variance_m2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum_kgm2ps = Eigen::Vector3d::Zero();
+  std::array<BodyFoot, 2> feet;  ///< Left, right.
+  std::uint32_t resets = 0;
+  std::vector<double> link_sd_m;
+  std::string note;
+  double solve_us = 0;
+  std::array<bool, 2> hands_seen{};
+  std::string hands_source;    ///< "wiimote", a tracker's name; empty: no source reports the hands.
+  std::string contact_source;  ///< "boards" or "insoles"; empty of a server that does not say.
+};
+
+/// The true pose of a simulated body.
+struct ReferencePose {
+  std::int64_t received_ns = 0;  ///< On the viewer's clock, like the next.
+  std::int64_t sampled_ns = 0;
+  std::vector<int> parents;
+  std::vector<Eigen::Vector3d> positions_m;  ///< Of each joint, W.
+};
+
+/// The segment that the terrain game's builder holds, as a slab that one sees through; nothing
+/// without one.
+void AddGhostSegment(const stream::GameState& game, PartList& ghosts);
+
+/// Linear light where the ground meets the sky, also of the fog, and straight up.
+inline const Colour kHorizonLight(0.74f, 0.84f, 0.90f);
+inline const Colour kZenithLight(0.09f, 0.30f, 0.66f);
+
+struct SkyVertex {
+  Eigen::Vector3f direction;  ///< From the eye, of any length.
+  Colour colour;
+};
+
+/// The sky as a dome of colours with two rows of far hills before it. To be drawn in order.
+struct SkyMesh {
+  std::vector<SkyVertex> vertices;
+  std::vector<std::uint32_t> indices;
+};
+SkyMesh BuildSky();
 
 }  // namespace footing::scene

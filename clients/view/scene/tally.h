@@ -1,13 +1,78 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
+#include "clients/view/scene/part.h"
 #include "clients/view/scene/update.h"
 
 namespace footing::scene {
+
+/// The names of the bird's links and contact points, resolved once a skeleton.
+struct BirdSkeleton {
+  int body = 0;
+  std::array<int, 2> hips{1, 3};  ///< Left, right.
+  std::array<int, 2> feet{0, 1};  ///< Contact points: left, right.
+};
+
+/// Finds the parts by name; those missing keep the usual order.
+BirdSkeleton FindParts(const stream::Skeleton& skeleton);
+
+/// What moves for the eye alone, filtered over time: a copyable value.
+struct BirdMotion {
+  bool placed = false;
+  double head_yaw_rad = 0;    ///< Filtered over 0.2 s, as a bird holds its head still.
+  double head_pitch_rad = 0;  ///< Positive looks up.
+  double head_lift_m = 0;     ///< Head above its place on the body, at most 0.10 m either way.
+  double body_height_m = 0;
+  std::array<double, 2> toe_spread{0, 0};  ///< 0 folded, 1 spread: 1 while the foot touches.
+  double wing_spread = 0;                  ///< 1 while neither foot touches.
+};
+
+/// Moves on by dt_s >= 0.
+BirdMotion Advance(const BirdMotion& motion, const BirdSkeleton& skeleton,
+                   const CharacterPose& pose, double dt_s);
+
+/// Feathers and skin of one bird.
+struct Plumage {
+  Colour back, belly, wing, tail, crest, skin, beak;
+};
+
+/// One plumage a character, so that two players can distinguish their birds.
+Plumage PlumageOf(std::uint32_t character);
+
+/// The bird over a biped's pose; its toes bend on the floor of that height. Adds nothing when the
+/// pose has not the links it needs.
+void AddBird(const BirdSkeleton& skeleton, const CharacterPose& pose, const BirdMotion& motion,
+             double floor_m, PartList& parts);
+
+/// Neck, head, eyes, beak and crest. X_WB's columns 0 to 2 are the body's axes, column 3 its place.
+void AddHead(const Eigen::Matrix4f& X_WB, const BirdMotion& motion, const Plumage& plumage,
+             PartList& parts);
+
+/// Each of the drawn leg's two segments. The telescoping leg is 0.55 m to 1.15 m long, so two
+/// segments of 0.60 m always reach.
+inline constexpr double kLegSegmentM = 0.60;
+
+/// A bird's leg drawn over a telescoping one: hip, backward-bending ankle, foot, in W.
+struct LegPose {
+  Eigen::Vector3d hip_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d foot_m = Eigen::Vector3d::Zero();
+};
+
+/// Puts the ankle sqrt(a^2 - (l/2)^2) behind the middle of the line from hip to foot, within the
+/// leg's pitch plane; a = kLegSegmentM, l = |foot - hip|. `forward` is the leg's pitch-plane
+/// direction; need not be of length 1 nor square to the leg. A leg longer than 2 a, which the
+/// physics never makes, is drawn straight from the hip with the foot where it is.
+LegPose SolveLeg(const Eigen::Vector3d& hip_m, const Eigen::Vector3d& foot_m,
+                 const Eigen::Vector3d& forward);
 
 /// Latencies of the last 100 000 ticks.
 class Latencies {
@@ -71,6 +136,45 @@ class Tally {
   double distance_m_ = 0;
   double off_track_s_ = 0;
   std::vector<stream::Gait> seen_;
+};
+
+/// What a run has seen of a reconstructed body, and how far it was from what the simulated person's
+/// body really did. Each pose is held against the reference that was sampled nearest to when the
+/// pose is of (its publication less its lag), so all latencies count as errors.
+class PoseTally {
+ public:
+  /// The first character of a frame that was published at `host_ns` (the viewer's clock).
+  void Add(const CharacterPose& pose, const Anatomy& anatomy, std::int64_t host_ns,
+           const std::deque<ReferencePose>& references);
+
+  bool any() const { return frames_ > 0; }
+  bool calibrated() const { return last_.calibrated; }
+  /// Frames with a T-pose taken, and how often one was taken.
+  std::uint64_t calibrated_frames() const { return calibrated_frames_; }
+  std::uint64_t calibrations() const { return calibrations_; }
+  std::uint32_t resets() const { return last_.resets; }
+  double mass_kg() const { return last_.mass_kg; }
+  const std::string& hands_source() const { return last_.hands_source; }
+  const std::string& contact_source() const { return last_.contact_source; }
+  /// Frames that were compared; the means below are over them, cm, over those that are not valid,
+  /// too. Joints are the landmarks of a person without the tips of hands and toes.
+  std::uint64_t compared() const { return compared_; }
+  std::uint64_t invalid() const { return invalid_; }  ///< Of the frames compared.
+  double mpjpe_cm() const { return Mean(all_cm_); }
+  /// Of the joints against the hips.
+  double mpjpe_root_relative_cm() const { return Mean(relative_cm_); }
+  double wrists_cm() const { return Mean(wrists_cm_); }
+  double ankles_cm() const { return Mean(ankles_cm_); }
+
+ private:
+  double Mean(double sum) const {
+    return compared_ == 0 ? 0 : sum / static_cast<double>(compared_);
+  }
+  void Compare(const CharacterPose& pose, const Anatomy& anatomy, const ReferencePose& reference);
+
+  std::uint64_t frames_ = 0, calibrated_frames_ = 0, calibrations_ = 0, compared_ = 0, invalid_ = 0;
+  BodyState last_;
+  double all_cm_ = 0, relative_cm_ = 0, wrists_cm_ = 0, ankles_cm_ = 0;
 };
 
 }  // namespace footing::scene

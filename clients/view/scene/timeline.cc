@@ -1,6 +1,12 @@
 #include "clients/view/scene/timeline.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "clients/view/scene/text.h"
+#include "common/base/text.h"
 
 namespace footing::timeline {
 namespace {
@@ -124,6 +130,237 @@ Timeline Only(const Timeline& timeline, const TrialMark& trial) {
     if (within(task.at_s)) only.tasks.push_back(task);
   }
   return only;
+}
+
+PlayHead HeadAt(double begin_s, double end_s, double speed) {
+  return {begin_s, std::max(begin_s, end_s), begin_s, speed, false};
+}
+
+PlayHead Sought(PlayHead head, double at_s) {
+  head.at_s = std::clamp(at_s, head.begin_s, head.end_s);
+  return head;
+}
+
+PlayHead Advanced(PlayHead head, double passed_s) {
+  if (head.paused || passed_s <= 0) return head;
+  return Sought(head, head.at_s + head.speed * passed_s);
+}
+
+double Faster(double speed) {
+  for (const double one : kSpeeds) {
+    if (one > speed) return one;
+  }
+  return kSpeeds.back();
+}
+
+double Slower(double speed) {
+  double slower = kSpeeds.front();
+  for (const double one : kSpeeds) {
+    if (one < speed) slower = one;
+  }
+  return slower;
+}
+
+namespace {
+
+constexpr double kStepS = 1;
+
+PlayHead PausedAt(PlayHead head, double at_s) {
+  head.paused = true;
+  return Sought(head, at_s);
+}
+
+PlayHead AtSpeed(PlayHead head, double speed) {
+  head.speed = speed;
+  return head;
+}
+
+}  // namespace
+
+std::optional<PlayAction> ActionOf(const char* key) {
+  for (const PlayKey& one : kPlayKeys) {
+    if (std::string_view(one.key) == key) return one.action;
+  }
+  return std::nullopt;
+}
+
+PlayHead Act(const PlayHead& head, PlayAction action, const Timeline& timeline, double frame_s) {
+  switch (action) {
+    case PlayAction::kPause: {
+      // At the end it plays again from the beginning.
+      PlayHead next = head.ended() ? Sought(head, head.begin_s) : head;
+      next.paused = !head.ended() && !head.paused;
+      return next;
+    }
+    case PlayAction::kBack:
+      return Sought(head, head.at_s - kStepS);
+    case PlayAction::kForward:
+      return Sought(head, head.at_s + kStepS);
+    case PlayAction::kFrameBack:
+      return PausedAt(head, head.at_s - frame_s);
+    case PlayAction::kFrameForward:
+      return PausedAt(head, head.at_s + frame_s);
+    case PlayAction::kFaster:
+      return AtSpeed(head, Faster(head.speed));
+    case PlayAction::kSlower:
+      return AtSpeed(head, Slower(head.speed));
+    case PlayAction::kNextFailure: {
+      const auto at_s = NextFailure(timeline, head.at_s);
+      return at_s ? PausedAt(head, *at_s) : head;
+    }
+    case PlayAction::kPreviousFailure: {
+      const auto at_s = PreviousFailure(timeline, head.at_s);
+      return at_s ? PausedAt(head, *at_s) : head;
+    }
+    case PlayAction::kNextTrial:
+      return Sought(head, NextTrial(timeline, head.at_s).value_or(head.at_s));
+    case PlayAction::kBegin:
+      return Sought(head, head.begin_s);
+    case PlayAction::kEnd:
+      return Sought(head, head.end_s);
+  }
+  return head;
+}
+
+namespace {
+
+template <typename Mark, typename Less>
+std::vector<Mark> Merged(const std::vector<Mark>& a, const std::vector<Mark>& b, Less less) {
+  std::vector<Mark> all = a;
+  all.insert(all.end(), b.begin(), b.end());
+  std::stable_sort(all.begin(), all.end(), less);
+  return all;
+}
+
+}  // namespace
+
+double ZeroOf(const Timeline& trial) {
+  if (trial.trials.empty()) return trial.begin_s;
+  return trial.trials.front().start_s.value_or(trial.trials.front().begin_s);
+}
+
+Result<std::array<double, 2>> ZerosOf(const std::array<Side, 2>& sides, Alignment alignment) {
+  std::array<double, 2> zeros{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Timeline& timeline = sides[i].timeline;
+    switch (alignment) {
+      case Alignment::kStart:
+        zeros[i] = ZeroOf(timeline);
+        break;
+      case Alignment::kFinish:
+        if (timeline.trials.empty() || !timeline.trials.front().end_s) {
+          return UsageError(
+              "--align finish: a trial has no end in its recording; use --align start");
+        }
+        zeros[i] = *timeline.trials.front().end_s;
+        break;
+      case Alignment::kWall:
+        if (!sides[i].wall_of_zero_ns) {
+          return UsageError(
+              "--align wall: a recording does not say its time of day; use --align start");
+        }
+        zeros[i] = sides[0].timeline.begin_s;
+        if (i == 1) {
+          zeros[i] +=
+              1e-9 * static_cast<double>(*sides[0].wall_of_zero_ns - *sides[1].wall_of_zero_ns);
+        }
+        break;
+    }
+  }
+  return zeros;
+}
+
+SideState SideAt(const Timeline& side, double at_s) {
+  return {std::clamp(at_s, side.begin_s, std::max(side.begin_s, side.end_s)), at_s < side.begin_s,
+          at_s >= side.end_s};
+}
+
+Timeline Joined(const Timeline& first, const Timeline& second) {
+  Timeline joined;
+  joined.begin_s = std::min(first.begin_s, second.begin_s);
+  joined.end_s = std::max(first.end_s, second.end_s);
+  const auto earlier = [](const auto& a, const auto& b) { return a.at_s < b.at_s; };
+  joined.failures = Merged(first.failures, second.failures, earlier);
+  joined.tasks = Merged(first.tasks, second.tasks, earlier);
+  joined.trials = Merged(first.trials, second.trials, [](const TrialMark& a, const TrialMark& b) {
+    return a.begin_s < b.begin_s;
+  });
+  return joined;
+}
+
+namespace {
+
+constexpr std::int64_t kTenthsAMinute = 600;
+constexpr std::int64_t kMinutesAnHour = 60;
+
+std::string TwoDigits(std::int64_t value) {
+  return (value < 10 ? "0" : "") + std::to_string(value);
+}
+
+std::string FailureText(const FailureMark& failure) {
+  return std::string("failure: ") + stream::Name(failure.cause) + ", at " +
+         scene::Fixed(failure.distance_m, 1) + " m" + (failure.withdrawn ? ", withdrawn" : "");
+}
+
+}  // namespace
+
+std::string ClockText(double seconds) {
+  const std::int64_t tenths = std::llround(std::abs(seconds) * 10);
+  const std::int64_t minutes = tenths / kTenthsAMinute;
+  const std::int64_t rest = tenths % kTenthsAMinute;
+  std::string text = seconds < 0 && tenths > 0 ? "-" : "";
+  if (minutes >= kMinutesAnHour) {
+    text += std::to_string(minutes / kMinutesAnHour) + ":" + TwoDigits(minutes % kMinutesAnHour);
+  } else {
+    text += std::to_string(minutes);
+  }
+  return text + ":" + TwoDigits(rest / 10) + "." + std::to_string(rest % 10);
+}
+
+std::string PositionText(const PlayHead& head) {
+  std::string text = ClockText(head.at_s) + " of " + ClockText(head.end_s);
+  if (head.speed != 1) text += "   speed " + text::Shortest(head.speed);
+  if (head.ended()) return text + "   end";
+  return text + (head.paused ? "   paused" : "");
+}
+
+std::string TrialText(const Timeline& timeline, double at_s) {
+  const TrialMark* const trial = TrialAt(timeline, at_s);
+  if (trial == nullptr) return "";
+  const stream::FailureCounts counts = FailuresOf(timeline, *trial, at_s);
+  const std::string name = trial->id.empty() ? NameOf(*trial) : "trial " + trial->id;
+  return name + "   failed attempts " + std::to_string(stream::Total(counts)) +
+         scene::CauseText(counts);
+}
+
+std::string StateText(const SideState& state) {
+  if (state.finished) return "ended";
+  return state.before ? "not begun" : "";
+}
+
+std::vector<std::string> MarkLines(const Timeline& timeline) {
+  std::vector<std::pair<double, std::string>> marks;
+  for (const TrialMark& trial : timeline.trials) {
+    const std::string name = trial.id.empty() ? NameOf(trial) : "trial " + trial.id;
+    marks.emplace_back(trial.begin_s,
+                       name + " ready" + (trial.track.empty() ? "" : ", track " + trial.track));
+    if (trial.start_s) marks.emplace_back(*trial.start_s, name + " crosses the start line");
+    if (trial.end_s) {
+      marks.emplace_back(*trial.end_s, name + " " + stream::Name(trial.phase) + ", " +
+                                           scene::Fixed(trial.time_s, 2) + " s");
+    }
+  }
+  for (const FailureMark& failure : timeline.failures) {
+    marks.emplace_back(failure.at_s, FailureText(failure));
+  }
+  for (const TaskMark& task : timeline.tasks) {
+    marks.emplace_back(task.at_s, "task " + task.task + " done");
+  }
+  std::stable_sort(marks.begin(), marks.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> lines;
+  for (const auto& [at_s, what] : marks) lines.push_back(ClockText(at_s) + "  " + what);
+  return lines;
 }
 
 }  // namespace footing::timeline

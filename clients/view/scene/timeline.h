@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -81,5 +82,144 @@ Result<TrialMark> FindTrial(const Timeline& timeline, const std::string& name);
 /// The part of the timeline in which one trial plays: from when it is ready to 2 s after its end,
 /// but not into the next one. Marks of others are left out; the zero stays.
 Timeline Only(const Timeline& timeline, const TrialMark& trial);
+
+/// Paces of playback: recorded seconds a second.
+inline constexpr std::array kSpeeds{0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+
+/// Where playback stands on a timeline, and how it moves on.
+struct PlayHead {
+  double begin_s = 0;
+  double end_s = 0;
+  double at_s = 0;
+  double speed = 1;
+  bool paused = false;
+
+  bool ended() const { return at_s >= end_s; }
+};
+
+/// From `begin_s` on.
+PlayHead HeadAt(double begin_s, double end_s, double speed);
+
+/// Moves to a position, or to the nearest end.
+PlayHead Sought(PlayHead head, double at_s);
+/// The position after `passed_s` of the viewer's time; it stops at the end.
+PlayHead Advanced(PlayHead head, double passed_s);
+
+/// The next pace of kSpeeds above or below the present one, which need not be among them; the last
+/// one where there is no other.
+double Faster(double speed);
+double Slower(double speed);
+
+/// What a person can ask of playback.
+enum class PlayAction {
+  kPause,
+  kBack,
+  kForward,
+  kFrameBack,
+  kFrameForward,
+  kFaster,
+  kSlower,
+  kNextFailure,
+  kPreviousFailure,
+  kNextTrial,
+  kBegin,
+  kEnd,
+};
+
+/// A key that asks for it. Letters and signs are as on the keyboard, in capitals; the others have
+/// their names.
+struct PlayKey {
+  const char* key;
+  PlayAction action;
+};
+
+/// All of them; several keys may ask for the same.
+inline constexpr std::array<PlayKey, 15> kPlayKeys{{
+    {"space", PlayAction::kPause},
+    {"left", PlayAction::kBack},
+    {"right", PlayAction::kForward},
+    {",", PlayAction::kFrameBack},
+    {".", PlayAction::kFrameForward},
+    {"up", PlayAction::kFaster},
+    {"down", PlayAction::kSlower},
+    {"+", PlayAction::kFaster},
+    {"=", PlayAction::kFaster},
+    {"-", PlayAction::kSlower},
+    {"N", PlayAction::kNextFailure},
+    {"P", PlayAction::kPreviousFailure},
+    {"T", PlayAction::kNextTrial},
+    {"home", PlayAction::kBegin},
+    {"end", PlayAction::kEnd},
+}};
+
+/// Lines for the list of keys: the keys and what they do.
+inline constexpr std::array<std::array<const char*, 2>, 11> kPlayKeyHelp{{
+    {"space", "pause or continue"},
+    {"left, right", "1 s back, 1 s forward"},
+    {", and .", "one frame back, one forward"},
+    {"up, down", "faster, slower: 0.1 to 8; also + and -"},
+    {"N, P", "next failure, previous failure"},
+    {"T", "the next trial"},
+    {"Home, End", "the beginning, the end"},
+    {"L", "show or hide the timeline"},
+    {"mouse", "click or drag on the timeline"},
+    {"", "drag above it to turn the view, wheel to zoom"},
+    {"Z", "the first view again; also a double click"},
+}};
+
+/// The action of a key; nothing when it has none.
+std::optional<PlayAction> ActionOf(const char* key);
+
+/// Carries it out. A frame is `frame_s` long. It pauses at a failure and at a step by frames; the
+/// head stays where there is no failure or trial to go to.
+PlayHead Act(const PlayHead& head, PlayAction action, const Timeline& timeline, double frame_s);
+
+/// At which instant two trials stand side by side: that instant is 0 of both.
+enum class Alignment {
+  kStart,   ///< The start line, or the beginning of a trial that never crossed it.
+  kFinish,  ///< The end of both trials.
+  kWall,    ///< The same time of day; 0 is the beginning of the first one.
+};
+
+/// One of two recordings to be compared.
+struct Side {
+  Timeline timeline;  ///< Of what is played, usually one trial; zero is the recording's own.
+  /// UNIX time of the recording's zero; nothing when it does not say.
+  std::optional<std::int64_t> wall_of_zero_ns;
+};
+
+/// The position, on each side's own timeline, that becomes its 0. UsageError when a side does not
+/// have what the alignment needs.
+Result<std::array<double, 2>> ZerosOf(const std::array<Side, 2>& sides, Alignment alignment);
+
+/// The 0 of a trial that plays alone: where its clock starts.
+double ZeroOf(const Timeline& trial);
+
+/// Where one side stands while both play, at a common position within or beside its own time.
+struct SideState {
+  double at_s = 0;        ///< Position to show.
+  bool before = false;    ///< It has not begun: its first state is shown.
+  bool finished = false;  ///< It is over: its last state is shown.
+};
+SideState SideAt(const Timeline& side, double at_s);
+
+/// Marks of both, over the time in which either plays.
+Timeline Joined(const Timeline& first, const Timeline& second);
+
+/// "0:12.3", "-0:01.5", "1:02:03.4".
+std::string ClockText(double seconds);
+
+/// "0:12.3 of 1:00.0   speed 0.25   paused".
+std::string PositionText(const PlayHead& head);
+
+/// "trial p07-1   failed attempts 2 (curve 1, jump 1)": what is so at a position; empty without a
+/// trial.
+std::string TrialText(const Timeline& timeline, double at_s);
+
+/// "ended", "not begun", or empty while it plays.
+std::string StateText(const SideState& state);
+
+/// One line a mark, by time, as a terminal shows them.
+std::vector<std::string> MarkLines(const Timeline& timeline);
 
 }  // namespace footing::timeline

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/view/scene/body_state.h"
+#include "clients/view/scene/part.h"
 #include "common/stream/character.h"
 #include "common/stream/device.h"
 #include "common/stream/game.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "common/virtual/camera/canvas.h"
-#include "common/virtual/camera/pixel_noise.h"
 
 namespace footing::virtual_camera {
 namespace {

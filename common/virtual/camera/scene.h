@@ -1,13 +1,30 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "common/virtual/camera/lens.h"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "common/virtual/devices/noise.h"
 
 namespace footing::virtual_camera {
+
+/// The simulated camera's lens, pinhole with radial and tangential distortion (Brown's model, the
+/// order of OpenCV). Camera frame C: x right, y down, z forward; pixels: the middle of the first
+/// one is (0, 0). The estimator has a lens of its own (common/camera), on purpose.
+struct Lens {
+  int width = 640, height = 480;
+  double fx_px = 540, fy_px = 540, cx_px = 319.5, cy_px = 239.5;
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+};
+
+/// Where a point of C in front of the camera appears, px.
+Eigen::Vector2d Project(const Lens& lens, const Eigen::Vector3d& p_C_m);
+
+/// The unit vector in C that is seen at a pixel; Newton's method on the distortion.
+Eigen::Vector3d RayThrough(const Lens& lens, const Eigen::Vector2d& pixel);
 
 /// A luminous sphere, as of a PS Move. Brightness is in DN, digital numbers of the 8-bit sensor
 /// before clipping, at the exposure of the scene, for red, green and blue.
@@ -74,5 +91,33 @@ struct Seen {
   double after_s = 0;
 };
 std::optional<Seen> Truth(const Scene& scene, const Ball& ball);
+
+/// A point at this depth (z of C) whose image is in the central `share` of the picture, evenly.
+Eigen::Vector3d PlaceInView(const Lens& lens, double depth_m, double share, noise::Random& random);
+
+/// `count` rectangles and ellipses of saturated colours, half of them dim, none as bright as a
+/// ball at a good exposure (at most 120 DN), and a white lamp that clips. Shapes that touch one of
+/// the scene's balls in the picture and share its colour (less than 25 degrees of hue apart) get
+/// another hue: such a ball has no edge there.
+void AddClutter(Scene& scene, int count, noise::Random& random);
+
+/// A line that hides this share of the area of a ball's disc, from a random side.
+Occluder Hide(const Scene& scene, const Ball& ball, double share, noise::Random& random);
+
+/// What a camera that does not give its mosaic sends: missing colours as the mean of their
+/// neighbours, then BT.601 luma and chroma of two pixels each, Y U Y V.
+std::vector<std::uint8_t> ToYuyv(const Mosaic& mosaic);
+
+/// A white sheet with black dots in columns and rows, as footing-camera lens prints it. Its frame:
+/// x along the rows, y down the columns, the origin in the middle of the dots.
+struct DotSheet {
+  int columns = 13, rows = 9;
+  double pitch_m = 0.02, radius_m = 0.005, margin_m = 0.02;
+  Eigen::Isometry3d X_CS = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d paper_dn{180, 190, 170}, ink_dn{20, 22, 21};
+};
+
+/// The frame that the sensor reads of a sheet before the scene's background, each pixel 16-fold.
+Mosaic RenderSheet(const Scene& scene, const DotSheet& sheet, noise::Random& random);
 
 }  // namespace footing::virtual_camera

@@ -4,11 +4,67 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "common/virtual/devices/memory.h"
+#include "common/board/geometry.h"
+#include "common/stream/product_ids.h"
+#include "common/virtual/devices/extensions.h"
 
+/// The memories of a Wiimote or Balance Board, as they answer on the radio.
 namespace footing::virtual_devices {
+
+/// Error nibbles of the replies.
+inline constexpr std::uint8_t kMemoryOk = 0;
+inline constexpr std::uint8_t kMemoryAbsent = 7;  ///< No such register, or nothing plugged in.
+inline constexpr std::uint8_t kMemoryBeyond = 8;  ///< No such address.
+
+/// EEPROM 0x0000 to 0x16ff, and register pages of 256 bytes: speaker (0xa2), extension (0xa4, when
+/// one is plugged in), MotionPlus (0xa6, when there is one) and camera (0xb0). An active MotionPlus
+/// answers at 0xa4, where it hides the extension behind it.
+class Memory {
+ public:
+  explicit Memory(bool extension);
+
+  /// Reads or writes within one space; the error nibble. On an error nothing is touched.
+  std::uint8_t Read(bool registers, std::uint32_t address, std::span<std::uint8_t> out) const;
+  std::uint8_t Write(bool registers, std::uint32_t address, std::span<const std::uint8_t> data);
+
+  std::span<std::uint8_t> eeprom() { return eeprom_; }
+  std::span<const std::uint8_t> camera() const { return camera_; }
+  std::span<std::uint8_t> extension() { return extension_; }
+  /// What the detect pin of the port says.
+  bool has_extension() const {
+    return port_ready_ && (motion_plus_mode_ != 0 || !extension_.empty());
+  }
+  /// Plugs a page of 256 bytes in at 0xa4; an empty one pulls it.
+  void SetExtension(std::vector<std::uint8_t> page);
+  /// The same at 0xa6; it begins inactive.
+  void SetMotionPlus(std::vector<std::uint8_t> page);
+  bool has_motion_plus() const { return !motion_plus_.empty(); }
+  /// 0: inactive; else what was written to 0xa600fe: 4 alone, 5 Nunchuk or 7 Classic through.
+  std::uint8_t motion_plus_mode() const { return motion_plus_mode_; }
+  /// While not ready, nothing answers at 0xa4 and 0xa6.
+  void set_port_ready(bool ready) { port_ready_ = ready; }
+  bool port_ready() const { return port_ready_; }
+  /// The extension answers in plain bytes: 0x55 was written to 0xa400f0, then 0x00 to 0xa400fb.
+  bool extension_plain() const { return extension_plain_; }
+
+ private:
+  const std::vector<std::uint8_t>* Page(std::uint32_t page) const;
+  void WriteExtension(std::size_t at, std::uint8_t value);
+  void WriteMotionPlus(std::size_t at, std::uint8_t value);
+
+  std::vector<std::uint8_t> eeprom_;
+  std::vector<std::uint8_t> extension_;
+  std::vector<std::uint8_t> motion_plus_;
+  std::uint8_t motion_plus_mode_ = 0;
+  bool port_ready_ = true;
+  std::vector<std::uint8_t> speaker_;
+  std::vector<std::uint8_t> camera_;
+  bool extension_key_ = false;
+  bool extension_plain_ = false;
+};
 
 /// Id byte and payload.
 using Report = std::vector<std::uint8_t>;
@@ -81,6 +137,111 @@ class Controller {
   Readings held_;             ///< One moment in both halves.
   std::uint16_t buttons_ = 0;
   Report last_data_;
+};
+
+/// How a device presents itself to the host.
+struct Identity {
+  std::uint32_t bus = static_cast<std::uint32_t>(stream::Bus::kBluetooth);
+  std::uint32_t vendor = stream::kVendorNintendo;
+  std::uint32_t product = stream::kProductFirst;
+  std::string name;
+  std::string serial;  ///< A Bluetooth address.
+};
+
+/// First bytes of the addresses of each kind, so that devices of one seed differ. Nobody registered
+/// them: they are locally administered.
+enum class SerialOf {
+  kWiimote = 0x52,
+  kBalanceBoard = 0x56,
+  kPsMove = 0x5a,
+  kProController = 0x5e
+};
+
+/// A Bluetooth address drawn from the seed.
+std::string MakeSerial(SerialOf kind, std::uint64_t seed);
+
+struct ProControllerSensors {
+  GamepadSensors gamepad;   ///< Its triggers are switches: the bits of `buttons` alone count.
+  bool left_stick = false;  ///< Pressed in.
+  bool right_stick = false;
+};
+
+/// A Wii U Pro Controller: a Wiimote's radio with an extension of its own, which cannot be pulled.
+class ProController {
+ public:
+  explicit ProController(std::uint64_t seed);
+
+  const Identity& identity() const { return identity_; }
+
+  std::vector<Report> HandleOutput(std::span<const std::uint8_t> report) {
+    return controller_.HandleOutput(report);
+  }
+
+  /// The report of one sample, when the mode calls for one; before the extension is switched to
+  /// plain bytes they are of no use (FF).
+  std::optional<Report> Sample(const ProControllerSensors& sensors);
+
+  /// 0 empty to 4 full.
+  void set_battery(std::uint8_t level) { battery_ = level; }
+  Controller& controller() { return controller_; }
+
+ private:
+  Identity identity_;
+  Controller controller_;
+  std::uint8_t battery_ = 4;
+};
+
+using board::CornerForces;
+
+/// A Balance Board: a Wiimote's radio with an extension that measures four corners.
+///
+/// Its cells read more than their calibration says, by 1 / 0.99908, and 0.07 % more for each step
+/// of its thermometer above the calibration's: what WiiBrew found, and what a host has to take off
+/// again. They feel force: the mass that gives it depends on the place's gravity, and is the
+/// host's.
+class BalanceBoard {
+ public:
+  static constexpr std::size_t kCorners = 4;  ///< Top right, bottom right, top left, bottom left.
+  /// Counts at 0, 17 and 34 kg.
+  using Points = std::array<int, 3>;
+  /// The thermometer's byte at calibration; 0x19 in the packet of a real one.
+  static constexpr std::uint8_t kReferenceTemperature = 0x19;
+
+  /// Its calibration is drawn from the seed.
+  explicit BalanceBoard(std::uint64_t seed);
+  /// With the calibration of a unit that is known.
+  BalanceBoard(std::uint64_t seed, const std::array<Points, kCorners>& points);
+
+  const Identity& identity() const { return identity_; }
+
+  std::vector<Report> HandleOutput(std::span<const std::uint8_t> report) {
+    return controller_.HandleOutput(report);
+  }
+
+  std::vector<Report> HandleOutput(std::int64_t, std::span<const std::uint8_t> report) {
+    return controller_.HandleOutput(report);
+  }
+
+  /// The report of one sample, when the mode calls for one; before the extension is switched to
+  /// plain bytes they are of no use (FF).
+  std::optional<Report> Sample(const CornerForces& forces, bool button = false);
+
+  void set_temperature(std::uint8_t raw) { temperature_ = raw; }
+  /// Byte 10; bars begin at 0x6a, 0x78, 0x7d and 0x82. The status report's byte hardly changes.
+  void set_battery(std::uint8_t raw) { battery_ = raw; }
+
+  Controller& controller() { return controller_; }
+  std::uint8_t leds() const { return controller_.leds(); }  ///< Bits 0 to 3.
+  bool rumble() const { return controller_.rumble(); }
+
+  const std::array<Points, kCorners>& points() const { return points_; }
+
+ private:
+  std::array<Points, kCorners> points_;
+  Identity identity_;
+  Controller controller_;
+  std::uint8_t temperature_ = kReferenceTemperature;
+  std::uint8_t battery_ = 0x83;  ///< Four bars.
 };
 
 }  // namespace footing::virtual_devices

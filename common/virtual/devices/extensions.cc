@@ -7,7 +7,7 @@
 #include <span>
 
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::virtual_devices {
 namespace {

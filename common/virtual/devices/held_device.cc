@@ -5,11 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/body/kinematics.h"
-#include "common/body/points.h"
 #include "common/base/units.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/devices/noise.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/devices/normal_vector.h"
 
 namespace footing::virtual_sensors {
 namespace {

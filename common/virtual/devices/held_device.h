@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "common/body/body.h"
 #include "common/base/units.h"
+#include "common/body/body.h"
+#include "common/virtual/devices/noise.h"
 #include "common/virtual/motion/motion.h"
-#include "common/virtual/devices/random.h"
 
 namespace footing::virtual_sensors {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/base/time.h"
 #include "common/base/units.h"
 
 namespace footing::virtual_devices {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::virtual_devices {
 

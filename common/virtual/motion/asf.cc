@@ -1,13 +1,262 @@
 #include "common/virtual/motion/asf.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "common/body/y_up.h"
-#include "common/virtual/motion/asf_text.h"
+#include "common/base/text.h"
+#include "common/body/skeleton.h"
+#include "common/virtual/motion/motion.h"
 
 namespace footing::motion {
+namespace {
+
+using body::Axis;
+
+/// Lengths of one bone and of units that make no sense beyond.
+constexpr double kMostLength = 1e6;
+
+/// An ASF file section by section; the parse functions stop at the line after theirs.
+class Parser {
+ public:
+  Parser(std::string_view text, const std::string& file) : lines_(text, file) {}
+
+  Result<AsfText> Run() {
+    Advance();
+    bool any = false;
+    while (line_) {
+      std::string_view rest = *line_;
+      const std::string_view section = text::TakeWord(rest);
+      if (section.empty() || section[0] != ':') return Fault("expected a section such as :root");
+      Advance();
+      any = true;
+      Result<void> done;
+      if (section == ":units") done = ParseUnits();
+      if (section == ":root") done = ParseRoot();
+      if (section == ":bonedata") done = ParseBones();
+      if (section == ":hierarchy") done = ParseHierarchy();
+      if (!done) return done.error();
+      while (line_ && text::Trim(*line_)[0] != ':') Advance();  // :documentation and the like.
+    }
+    if (!any || out_.bones.empty()) return Fault("not an ASF file: no :bonedata");
+    return std::move(out_);
+  }
+
+ private:
+  using Bone = AsfText::Bone;
+
+  Error Fault(const std::string& message) const { return lines_.Fault(message); }
+
+  void Advance() {
+    do {
+      line_ = lines_.NextFull();
+    } while (line_ && text::Trim(*line_)[0] == '#');
+  }
+  bool InSection() const { return line_ && text::Trim(*line_)[0] != ':'; }
+
+  Result<double> Number(std::string_view& line, const std::string& of) {
+    const std::string_view word = text::TakeWord(line);
+    const auto number = text::ToNumber(word);
+    if (number && std::abs(*number) <= kMostLength) return *number;
+    return Fault("expected a number of " + of + ", found " + text::Quoted(word));
+  }
+  Result<Eigen::Vector3d> Vector(std::string_view& line, const std::string& of) {
+    Eigen::Vector3d vector;
+    for (int i = 0; i < 3; ++i) {
+      const auto number = Number(line, of);
+      if (!number) return number.error();
+      vector(i) = *number;
+    }
+    return vector;
+  }
+  Result<std::string> AxisOrder(std::string_view& line) {
+    std::string order(text::TakeWord(line));
+    std::string sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    if (sorted != "XYZ")
+      return Fault("expected an order of axes such as XYZ, found " + text::Quoted(order));
+    return order;
+  }
+
+  Result<void> ParseUnits() {
+    for (; InSection(); Advance()) {
+      std::string_view rest = *line_;
+      const std::string_view key = text::TakeWord(rest);
+      if (key == "length") {
+        const auto number = Number(rest, "length");
+        if (!number) return number.error();
+        if (!(*number > 1e-6)) return Fault("the unit of length must be positive");
+        out_.units.length = *number;
+      } else if (key == "angle") {
+        const std::string_view unit = text::TakeWord(rest);
+        if (unit != "deg" && unit != "rad") return Fault("expected angle deg or rad");
+        out_.units.radians = unit == "deg" ? kPi / 180 : 1;
+      }
+    }
+    return {};
+  }
+
+  Result<void> ParseRoot() {
+    for (; InSection(); Advance()) {
+      std::string_view rest = *line_;
+      const std::string_view key = text::TakeWord(rest);
+      if (key == "order") {
+        out_.root_order.clear();
+        for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
+          out_.root_order.emplace_back(word);
+        }
+        auto sorted = out_.root_order;
+        std::sort(sorted.begin(), sorted.end());
+        if (sorted != std::vector<std::string>{"RX", "RY", "RZ", "TX", "TY", "TZ"}) {
+          return Fault("expected TX TY TZ RX RY RZ in some order");
+        }
+      } else if (key == "axis") {
+        auto order = AxisOrder(rest);
+        if (!order) return order.error();
+        out_.root_axis = *std::move(order);
+      } else if (key == "position" || key == "orientation") {
+        const auto vector = Vector(rest, "the root's " + std::string(key));
+        if (!vector) return vector.error();
+        (key == "position" ? out_.root_position : out_.root_orientation) = *vector;
+      }
+    }
+    return {};
+  }
+
+  Result<void> ParseBones() {
+    while (InSection()) {
+      if (text::Trim(*line_) != "begin") return Fault("expected 'begin' of a bone");
+      Advance();
+      if (out_.bones.size() >= kMostJoints) {
+        return Fault("more than " + std::to_string(kMostJoints) + " bones");
+      }
+      Bone bone;
+      for (; InSection() && text::Trim(*line_) != "end"; Advance()) {
+        const auto done = ParseBoneLine(*line_, bone);
+        if (!done) return done.error();
+      }
+      if (!InSection()) return Fault("bone " + text::Quoted(bone.name) + " has no 'end'");
+      if (bone.name.empty() || bone.name == "root") return Fault("a bone without a name");
+      for (const Bone& other : out_.bones) {
+        if (other.name == bone.name) return Fault("a second bone " + text::Quoted(bone.name));
+      }
+      if (bone.limits.size() > bone.dofs.size()) {
+        return Fault("bone " + bone.name + " has more limits than dof");
+      }
+      out_.bones.push_back(std::move(bone));
+      Advance();
+    }
+    return {};
+  }
+
+  Result<void> ParseBoneLine(std::string_view line, Bone& bone) {
+    std::string_view rest = line;
+    const std::string_view key = text::TakeWord(rest);
+    if (key == "name") {
+      bone.name = std::string(text::Trim(rest));
+    } else if (key == "direction") {
+      const auto vector = Vector(rest, "direction");
+      if (!vector) return vector.error();
+      bone.direction = *vector;
+    } else if (key == "length") {
+      const auto number = Number(rest, "length");
+      if (!number) return number.error();
+      bone.length = *number;
+    } else if (key == "axis") {
+      const auto vector = Vector(rest, "axis");
+      if (!vector) return vector.error();
+      bone.axis = *vector;
+      auto order = AxisOrder(rest);
+      if (!order) return order.error();
+      bone.axis_order = *std::move(order);
+    } else if (key == "dof") {
+      return ParseDofs(rest, bone);
+    } else if (key == "limits" || key.substr(0, 1) == "(") {
+      return ParseLimit(key == "limits" ? rest : line, bone);
+    }
+    return {};  // id, bodymass, cofmass.
+  }
+
+  Result<void> ParseDofs(std::string_view rest, Bone& bone) {
+    for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
+      const bool rotation = word.size() == 2 && (word[0] == 'r' || word[0] == 'R');
+      const auto axis = rotation ? std::string_view("xyz").find(static_cast<char>(word[1] | 0x20))
+                                 : std::string_view::npos;
+      if (axis == std::string_view::npos) {
+        return Fault("bone " + bone.name + ": expected dof rx, ry or rz, found " +
+                     text::Quoted(word) + " (bones that slide or stretch are not taken)");
+      }
+      const auto dof = static_cast<Axis>(axis);
+      if (std::find(bone.dofs.begin(), bone.dofs.end(), dof) != bone.dofs.end()) {
+        return Fault("bone " + bone.name + ": dof " + std::string(word) + " stands twice");
+      }
+      bone.dofs.push_back(dof);
+    }
+    return {};
+  }
+
+  Result<void> ParseLimit(std::string_view text, Bone& bone) {
+    std::string plain(text);
+    for (char& c : plain) {
+      if (c == '(' || c == ')' || c == ',') c = ' ';
+    }
+    std::string_view rest = plain;
+    while (!text::Trim(rest).empty()) {
+      double limits[2];
+      for (int i = 0; i < 2; ++i) {
+        const std::string_view word = text::TakeWord(rest);
+        const auto number = text::ToNumber(word);
+        const bool open =
+            text::EqualsIgnoringCase(word, "inf") || text::EqualsIgnoringCase(word, "-inf");
+        if (!number && !open)
+          return Fault("expected limits '(LOW HIGH)', found " + text::Quoted(text));
+        limits[i] = number ? *number * out_.units.radians : (i == 0 ? -1 : 1) * body::kUnlimited;
+      }
+      if (!(limits[0] <= limits[1]))
+        return Fault("limits " + text::Quoted(text) + " are the wrong way");
+      bone.limits.emplace_back(limits[0], limits[1]);
+    }
+    return {};
+  }
+
+  Result<void> ParseHierarchy() {
+    for (; InSection(); Advance()) {
+      std::string_view rest = *line_;
+      const std::string parent(text::TakeWord(rest));
+      if (parent == "begin" || parent == "end") continue;
+      if (parent != "root" && !Known(parent)) return Fault("no bone " + text::Quoted(parent));
+      for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
+        const std::string child(word);
+        if (!Known(child)) return Fault("no bone " + text::Quoted(child));
+        if (!parents_.emplace(child, parent).second) {
+          return Fault("bone " + child + " has two parents");
+        }
+        out_.links.emplace_back(parent, child);
+      }
+    }
+    return {};
+  }
+
+  bool Known(std::string_view name) const {
+    return std::any_of(out_.bones.begin(), out_.bones.end(),
+                       [name](const Bone& bone) { return bone.name == name; });
+  }
+
+  text::Lines lines_;
+  std::optional<std::string_view> line_;
+  AsfText out_;
+  std::map<std::string, std::string, std::less<>> parents_;
+};
+
+}  // namespace
+
+Result<AsfText> ParseAsfText(std::string_view text, const std::string& file) {
+  return Parser(text, file).Run();
+}
+
 namespace {
 
 using body::Axis;

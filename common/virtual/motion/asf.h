@@ -3,14 +3,48 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "common/base/result.h"
+#include "common/base/units.h"
+#include "common/body/skeleton.h"
 #include "common/virtual/motion/motion.h"
 
-/// Acclaim skeleton (ASF) and motion (AMC), as the CMU database has them; y up, z ahead.
 namespace footing::motion {
 
+/// What an ASF file says, in its own axes (y up, z ahead), units and order.
+struct AsfText {
+  struct Bone {
+    std::string name;
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    double length = 0;
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+    std::string axis_order = "XYZ";
+    std::vector<body::Axis> dofs;                   ///< In the file's axes and order.
+    std::vector<std::pair<double, double>> limits;  ///< rad.
+  };
+  struct Units {
+    double length = 1;
+    double radians = kPi / 180;  ///< Of one unit of angle.
+  };
+
+  Units units;
+  std::vector<Bone> bones;
+  std::vector<std::pair<std::string, std::string>> links;  ///< Parent, child, as they stand.
+  std::string root_axis = "XYZ";
+  std::vector<std::string> root_order = {"TX", "TY", "TZ", "RX", "RY", "RZ"};
+  Eigen::Vector3d root_position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d root_orientation = Eigen::Vector3d::Zero();
+};
+
+/// Reads the sections and checks that names, numbers and the hierarchy hold together. `file` is the
+/// name for errors, which say the line and what was expected there.
+Result<AsfText> ParseAsfText(std::string_view text, const std::string& file);
+
+/// Acclaim skeleton (ASF) and motion (AMC), as the CMU database has them; y up, z ahead.
 struct AsfOptions {
   /// One unit of length; 0 takes the file's own `length` as CMU means it, inches over it: with 0.45
   /// that is 0.0254 / 0.45 m = 5.644 cm.

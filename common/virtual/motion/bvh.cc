@@ -1,18 +1,16 @@
 #include "common/virtual/motion/bvh.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "common/body/y_up.h"
-#include "common/base/lines.h"
-#include "common/base/number.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
-#include "common/virtual/motion/bvh_stem.h"
-#include "common/virtual/motion/rate.h"
-#include "common/virtual/motion/value.h"
+#include "common/body/skeleton.h"
+#include "common/virtual/motion/table.h"
 
 namespace footing::motion {
 namespace {
@@ -295,6 +293,189 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
   if (lines.NextFull())
     return lines.Fault("more frames than the " + std::to_string(frames) + " announced");
   return OnMovingJoint(std::move(motion), stem_m, kStillM);
+}
+
+namespace {
+
+using body::Axis;
+using body::Joint;
+
+constexpr int kDecimals = 6;  // Of centimetres and degrees: finer than any capture, and stable.
+
+/// A joint as the file can hold it: three rotations about the plain axes.
+struct Written {
+  Joint joint;
+  bool as_it_is = false;
+};
+
+Written ToWritten(const Joint& joint) {
+  Written written{joint, joint.plain_axes && joint.rotations.size() == 3};
+  if (!written.as_it_is) {
+    written.joint.axes.setIdentity();
+    written.joint.plain_axes = true;
+    written.joint.first_dof = 0;
+    written.joint.rotations = {{Axis::kX}, {Axis::kZ}, {Axis::kY}};  // Z Y X of the file.
+  }
+  return written;
+}
+
+void AppendVector(std::string& text, const Eigen::Vector3d& p_W) {
+  const Eigen::Vector3d file = 100 * body::ToYUp(p_W);
+  for (int axis = 0; axis < 3; ++axis) {
+    text += ' ';
+    text::AppendFixed(text, file(axis), kDecimals);
+  }
+}
+
+class Writer {
+ public:
+  explicit Writer(const Motion& motion) : skeleton_(motion.skeleton) {
+    children_.resize(skeleton_.joints.size());
+    for (int i = 1; i < skeleton_.size(); ++i) {
+      children_[static_cast<std::size_t>(skeleton_.joint(i).parent)].push_back(i);
+    }
+    AppendJoint(0, 0);
+  }
+
+  std::string text = "HIERARCHY\n";
+  std::vector<int> order;  ///< Joints that turn, as the file has them.
+
+ private:
+  void AppendJoint(int index, std::size_t depth) {
+    const Joint& joint = skeleton_.joint(index);
+    const std::string indent(depth, '\t');
+    const bool end = body::IsEnd(skeleton_, index);
+    text += indent + (index == 0 ? "ROOT " + joint.name
+                      : end      ? std::string("End Site")
+                                 : "JOINT " + joint.name);
+    text += "\n" + indent + "{\n" + indent + "\tOFFSET";
+    AppendVector(text, joint.offset_m);
+    text += "\n";
+    if (!end) {
+      order.push_back(index);
+      text += indent + "\tCHANNELS " + (index == 0 ? "6 Xposition Yposition Zposition" : "3");
+      for (const auto& rotation : ToWritten(joint).joint.rotations) {
+        text += ' ';
+        text += "XYZ"[static_cast<int>(body::ToYUp(rotation.axis))];
+        text += "rotation";
+      }
+      text += "\n";
+      const auto& children = children_[static_cast<std::size_t>(index)];
+      for (int child : children) AppendJoint(child, depth + 1);
+      if (children.empty()) {
+        text += indent + "\tEnd Site\n" + indent + "\t{\n" + indent + "\t\tOFFSET 0.000000 " +
+                "0.000000 0.000000\n" + indent + "\t}\n";
+      }
+    }
+    text += indent + "}\n";
+  }
+
+  const body::Skeleton& skeleton_;
+  std::vector<std::vector<int>> children_;
+};
+
+}  // namespace
+
+std::string WriteBvh(const Motion& motion) {
+  Writer writer(motion);
+  std::string text = std::move(writer.text);
+  text += "MOTION\nFrames: " + std::to_string(motion.frames()) + "\nFrame Time: ";
+  text::AppendFixed(text, 1 / motion.rate_hz, 9);
+  text += "\n";
+  std::vector<Written> joints;
+  for (const int index : writer.order) joints.push_back(ToWritten(motion.skeleton.joint(index)));
+  // Angles of joints that are written otherwise than they are, kept continuous from frame to frame.
+  std::vector<Eigen::Vector3d> angles(joints.size(), Eigen::Vector3d::Zero());
+  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    const Eigen::VectorXd q = motion.q.col(frame);
+    const Eigen::Vector3d root = 100 * body::ToYUp(Eigen::Vector3d(q.head<3>()));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) text += ' ';
+      text::AppendFixed(text, root(axis), kDecimals);
+    }
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (joints[i].as_it_is) {
+        angles[i] = q.segment<3>(joints[i].joint.first_dof);
+      } else {
+        const Joint& joint = motion.skeleton.joint(writer.order[i]);
+        Eigen::VectorXd held = angles[i];
+        SetJointRotation(joints[i].joint, JointRotation(joint, q), held);
+        angles[i] = held;
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        text += ' ';
+        text::AppendFixed(text, RadiansToDegrees(angles[i](axis)), kDecimals);
+      }
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+namespace {
+
+using body::Axis;
+using body::Joint;
+
+/// The joints from `top` on, with `top` as the root.
+body::Skeleton From(const body::Skeleton& skeleton, int top) {
+  std::vector<Joint> joints(skeleton.joints.begin() + top, skeleton.joints.end());
+  for (Joint& joint : joints) joint.parent -= top;
+  Joint& root = joints.front();
+  root.parent = -1;
+  root.offset_m.setZero();
+  if (root.rotations.size() < 3) {
+    root.rotations.clear();
+    for (const Axis axis : {Axis::kZ, Axis::kX, Axis::kY}) {
+      root.rotations.push_back({axis, -body::kUnlimited, body::kUnlimited});
+    }
+  }
+  return body::MakeSkeleton(std::move(joints));
+}
+
+}  // namespace
+
+int StemLength(const body::Skeleton& skeleton) {
+  std::vector<int> children(skeleton.joints.size(), 0);
+  for (const Joint& joint : skeleton.joints) {
+    if (joint.parent >= 0) ++children[static_cast<std::size_t>(joint.parent)];
+  }
+  const auto branch =
+      std::find_if(children.begin(), children.end(), [](int count) { return count != 1; });
+  return branch == children.end() || *branch == 0 ? 0 : static_cast<int>(branch - children.begin());
+}
+
+Motion OnMovingJoint(Motion motion, const Eigen::MatrixXd& stem_m, double still_m) {
+  int top = static_cast<int>(stem_m.rows() / 3);
+  while (top > 0) {
+    const auto places = stem_m.middleRows<3>(3 * (top - 1));
+    if (((places.colwise() - places.col(0)).array().abs() > still_m).any()) break;
+    motion.skeleton.joints[static_cast<std::size_t>(top)].offset_m = places.col(0);
+    --top;
+  }
+  if (top == 0) return motion;
+  const body::Skeleton& from = motion.skeleton;
+  Motion out{From(from, top), motion.rate_hz, motion.start_s, {}};
+  out.q.resize(out.skeleton.dof, motion.frames());
+  const Joint& root = out.skeleton.joint(0);
+  const auto behind_root = static_cast<Eigen::Index>(3 + root.rotations.size());
+  const Eigen::Index rest = out.skeleton.dof - behind_root;
+  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    const Eigen::VectorXd q = motion.q.col(frame);
+    Eigen::Vector3d place_m = q.head<3>();
+    Eigen::Matrix3d turn = JointRotation(from.joint(0), q);
+    for (int i = 1; i <= top; ++i) {
+      place_m += turn * stem_m.col(frame).segment<3>(3 * (i - 1));
+      turn *= JointRotation(from.joint(i), q);
+    }
+    Eigen::VectorXd to = Eigen::VectorXd::Zero(out.skeleton.dof);
+    if (frame > 0) to = out.q.col(frame - 1);  // The nearest angles.
+    to.head<3>() = place_m;
+    SetJointRotation(root, turn, to);
+    to.tail(rest) = q.tail(rest);
+    out.q.col(frame) = to;
+  }
+  return out;
 }
 
 }  // namespace footing::motion

@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include <Eigen/Core>
+
 #include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
 
@@ -25,5 +27,15 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file,
 /// are, so what was read from our own output is written again byte for byte; any other joint that
 /// turns is written as three rotations.
 std::string WriteBvh(const Motion& motion);
+
+/// The joints of a BVH file between its root and the joint on which the legs hang.
+/// Number of joints below the root down to the first one with several children: joints 1 to n, each
+/// on the one before. Several programs put a joint on the floor there and move the hips on it.
+int StemLength(const body::Skeleton& skeleton);
+
+/// The motion with the lowest joint of the stem that moves on its parent as its root; itself when
+/// none does. `stem_m` has three rows for each joint of the stem, its place on its parent in W's
+/// axes, and a column for each frame.
+Motion OnMovingJoint(Motion motion, const Eigen::MatrixXd& stem_m, double still_m);
 
 }  // namespace footing::motion

@@ -1,18 +1,20 @@
 #include "common/virtual/motion/edit.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "common/body/kinematics.h"
-#include "common/base/quantile.h"
-#include "common/base/angle.h"
+#include <Eigen/Geometry>
+
+#include "common/base/result.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
-#include "common/virtual/motion/rate.h"
-#include "common/virtual/motion/signal.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/motion/table.h"
 
 namespace footing::motion {
 namespace {
@@ -179,6 +181,228 @@ Motion FacingForward(const Motion& motion, const body::Landmarks& landmarks) {
     out.q.col(frame) = q;
   }
   return out;
+}
+
+namespace {
+
+using body::Joint;
+using body::Landmark;
+
+/// `name` with its first `from` replaced, where it has one.
+std::optional<std::string> Replaced(const std::string& name, std::string_view from,
+                                    std::string_view to) {
+  const auto at = name.find(from);
+  if (at == std::string::npos) return std::nullopt;
+  std::string replaced = name;
+  return replaced.replace(at, from.size(), to);
+}
+
+/// The joint of the other side by its name, or the joint itself.
+int Partner(const body::Skeleton& skeleton, int index) {
+  constexpr std::pair<std::string_view, std::string_view> kSides[] = {
+      {"Left", "Right"}, {"left", "right"}, {"LEFT", "RIGHT"}, {"_L_", "_R_"},
+      {"_l_", "_r_"},    {".L", ".R"},      {".l", ".r"},
+  };
+  const std::string& name = skeleton.joint(index).name;
+  const auto there = [&](const std::optional<std::string>& other) {
+    return other ? body::FindJoint(skeleton, *other) : -1;
+  };
+  for (const auto& [left, right] : kSides) {
+    for (const auto& other : {Replaced(name, left, right), Replaced(name, right, left)}) {
+      if (const int found = there(other); found >= 0) return found;
+    }
+  }
+  for (const auto& [a, b] : {std::pair{'l', 'r'}, {'r', 'l'}, {'L', 'R'}, {'R', 'L'}}) {
+    if (name.empty() || name[0] != a) continue;
+    if (const int found = there(b + name.substr(1)); found >= 0) return found;
+  }
+  return index;
+}
+
+Eigen::Matrix3d Mirror() { return Eigen::Vector3d(1, -1, 1).asDiagonal(); }
+
+}  // namespace
+
+Motion Mirrored(const Motion& motion) {
+  const Eigen::Matrix3d S = Mirror();
+  std::vector<int> partner;
+  std::vector<Joint> joints = motion.skeleton.joints;
+  for (int i = 0; i < motion.skeleton.size(); ++i) {
+    partner.push_back(Partner(motion.skeleton, i));
+    joints[static_cast<std::size_t>(i)].offset_m =
+        S * motion.skeleton.joint(partner.back()).offset_m;
+  }
+  Motion out{body::MakeSkeleton(std::move(joints)), motion.rate_hz, motion.start_s, motion.q};
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(motion.skeleton.dof);
+  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    const Eigen::VectorXd from = motion.q.col(frame);
+    q.head<3>() = S * from.head<3>();
+    for (int i = 0; i < motion.skeleton.size(); ++i) {
+      const Joint& other = motion.skeleton.joint(partner[static_cast<std::size_t>(i)]);
+      SetJointRotation(out.skeleton.joint(i), S * JointRotation(other, from) * S, q);
+    }
+    out.q.col(frame) = q;
+  }
+  return out;
+}
+
+Result<Motion> WithLandmarksOnly(const Motion& motion) {
+  const auto landmarks = body::FindLandmarks(motion.skeleton);
+  if (!landmarks) return landmarks.error();
+  const body::Skeleton& from = motion.skeleton;
+  std::vector<bool> keep(from.joints.size(), false);
+  for (int i = 0; i < body::kLandmarkCount; ++i) {
+    const auto landmark = static_cast<Landmark>(i);
+    if (landmark == Landmark::kLeftHandEnd || landmark == Landmark::kRightHandEnd) continue;
+    for (int joint = (*landmarks)[landmark]; joint >= 0; joint = from.joint(joint).parent) {
+      keep[static_cast<std::size_t>(joint)] = true;
+    }
+  }
+  // Where each kept joint goes, and which of the dropped ones ends a wrist.
+  std::vector<Joint> joints;
+  std::vector<int> place(from.joints.size(), -1), sources;
+  const auto add = [&](int index) {
+    Joint joint = from.joint(index);
+    joint.parent = index == 0 ? -1 : place[static_cast<std::size_t>(joint.parent)];
+    place[static_cast<std::size_t>(index)] = static_cast<int>(joints.size());
+    sources.push_back(index);
+    joints.push_back(std::move(joint));
+  };
+  for (int i = 0; i < from.size(); ++i) {
+    if (!keep[static_cast<std::size_t>(i)]) continue;
+    add(i);
+    for (const auto& [wrist, end] : {std::pair{Landmark::kLeftWrist, Landmark::kLeftHandEnd},
+                                     {Landmark::kRightWrist, Landmark::kRightHandEnd}}) {
+      if (i != (*landmarks)[wrist]) continue;
+      int child = (*landmarks)[end];
+      while (child >= 0 && from.joint(child).parent != i) child = from.joint(child).parent;
+      for (int k = i + 1; child < 0 && k < from.size(); ++k) {
+        if (from.joint(k).parent == i) child = k;
+      }
+      if (child < 0) continue;
+      Joint tip;
+      tip.name = from.joint(i).name + "_end";
+      tip.parent = place[static_cast<std::size_t>(i)];
+      tip.offset_m = from.joint(child).offset_m;
+      joints.push_back(std::move(tip));
+      sources.push_back(-1);
+    }
+  }
+  Motion out{body::MakeSkeleton(std::move(joints)), motion.rate_hz, motion.start_s, {}};
+  out.q.resize(out.skeleton.dof, motion.frames());
+  out.q.topRows<3>() = motion.q.topRows<3>();
+  for (int i = 0; i < out.skeleton.size(); ++i) {
+    const Joint& joint = out.skeleton.joint(i);
+    const auto rows = static_cast<Eigen::Index>(joint.rotations.size());
+    if (rows == 0) continue;
+    out.q.middleRows(joint.first_dof, rows) =
+        motion.q.middleRows(from.joint(sources[static_cast<std::size_t>(i)]).first_dof, rows);
+  }
+  return out;
+}
+
+namespace {
+
+constexpr double kHighestCutoffOfRate = 0.45;
+
+struct Biquad {
+  double b0, b1, b2, a1, a2;
+};
+
+/// Bilinear transform of 1 / (s^2 + sqrt(2) s + 1), warped to the cutoff.
+Biquad Butterworth(double cutoff_of_rate) {
+  const double w = std::tan(kPi * cutoff_of_rate);
+  const double scale = 1 / (1 + std::sqrt(2.0) * w + w * w);
+  return {w * w * scale, 2 * w * w * scale, w * w * scale, 2 * (w * w - 1) * scale,
+          (1 - std::sqrt(2.0) * w + w * w) * scale};
+}
+
+/// Runs the filter along the columns in place, as if the first column had stood there for ever.
+void Run(const Biquad& f, Eigen::MatrixXd& signal) {
+  Eigen::VectorXd in1 = signal.col(0), in2 = in1, out1 = in1, out2 = in1;
+  for (Eigen::Index i = 0; i < signal.cols(); ++i) {
+    const Eigen::VectorXd in = signal.col(i);
+    const Eigen::VectorXd out = f.b0 * in + f.b1 * in1 + f.b2 * in2 - f.a1 * out1 - f.a2 * out2;
+    in2 = std::exchange(in1, in);
+    out2 = std::exchange(out1, out);
+    signal.col(i) = out;
+  }
+}
+
+}  // namespace
+
+Eigen::MatrixXd LowPass(const Eigen::MatrixXd& signal, double rate_hz, double cutoff_hz) {
+  FOOTING_CHECK(rate_hz > 0 && cutoff_hz > 0);
+  const Eigen::Index frames = signal.cols();
+  // (sqrt(2) - 1)^(1/4): two passes of a second-order filter.
+  const double single_of_rate = cutoff_hz / rate_hz / std::pow(std::sqrt(2.0) - 1, 0.25);
+  if (frames < 3 || single_of_rate >= kHighestCutoffOfRate) return signal;
+  // Long enough for the filter to settle: it forgets within one period of its cutoff.
+  const Eigen::Index pad =
+      std::min(frames - 1, static_cast<Eigen::Index>(std::ceil(1 / single_of_rate)) + 3);
+  Eigen::MatrixXd wide(signal.rows(), frames + 2 * pad);
+  for (Eigen::Index i = 0; i < pad; ++i) {
+    wide.col(pad - 1 - i) = 2 * signal.col(0) - signal.col(i + 1);
+    wide.col(pad + frames + i) = 2 * signal.col(frames - 1) - signal.col(frames - 2 - i);
+  }
+  wide.middleCols(pad, frames) = signal;
+  const Biquad filter = Butterworth(single_of_rate);
+  Run(filter, wide);
+  wide = wide.rowwise().reverse().eval();
+  Run(filter, wide);
+  return wide.rowwise().reverse().middleCols(pad, frames);
+}
+
+Spline::Spline(Eigen::MatrixXd samples, double rate_hz)
+    : samples_(std::move(samples)), rate_hz_(rate_hz) {
+  FOOTING_CHECK(samples_.cols() > 0 && rate_hz > 0);
+  const Eigen::Index n = samples_.cols();
+  curvatures_.setZero(samples_.rows(), n);
+  if (n < 3) return;
+  // c[i-1] + 4 c[i] + c[i+1] = 6 (x[i-1] - 2 x[i] + x[i+1]) / h^2, c = 0 at both ends.
+  Eigen::VectorXd upper(n);
+  upper(0) = 0;
+  for (Eigen::Index i = 1; i + 1 < n; ++i) {
+    const double pivot = 1 / (4 - upper(i - 1));
+    upper(i) = pivot;
+    curvatures_.col(i) =
+        pivot *
+        (6 * rate_hz * rate_hz * (samples_.col(i - 1) - 2 * samples_.col(i) + samples_.col(i + 1)) -
+         curvatures_.col(i - 1));
+  }
+  for (Eigen::Index i = n - 3; i >= 1; --i) {
+    curvatures_.col(i) -= upper(i) * curvatures_.col(i + 1);
+  }
+}
+
+Spline::Place Spline::At(double t_s) const {
+  const double last = static_cast<double>(samples_.cols() - 1);
+  const double at = std::clamp(t_s * rate_hz_, 0.0, last);
+  const auto before = std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at), 0,
+                                               std::max<Eigen::Index>(samples_.cols() - 2, 0));
+  return {before, at - static_cast<double>(before)};
+}
+
+Eigen::VectorXd Spline::Value(double t_s) const {
+  if (samples_.cols() == 1) return samples_.col(0);
+  const auto [i, b] = At(t_s);
+  const double a = 1 - b, h2 = 1 / (6 * rate_hz_ * rate_hz_);
+  return a * samples_.col(i) + b * samples_.col(i + 1) +
+         h2 * ((a * a * a - a) * curvatures_.col(i) + (b * b * b - b) * curvatures_.col(i + 1));
+}
+
+Eigen::VectorXd Spline::FirstDerivative(double t_s) const {
+  if (samples_.cols() == 1) return Eigen::VectorXd::Zero(samples_.rows());
+  const auto [i, b] = At(t_s);
+  const double a = 1 - b, h = 1 / (6 * rate_hz_);
+  return rate_hz_ * (samples_.col(i + 1) - samples_.col(i)) +
+         h * ((1 - 3 * a * a) * curvatures_.col(i) + (3 * b * b - 1) * curvatures_.col(i + 1));
+}
+
+Eigen::VectorXd Spline::SecondDerivative(double t_s) const {
+  if (samples_.cols() == 1) return Eigen::VectorXd::Zero(samples_.rows());
+  const auto [i, b] = At(t_s);
+  return (1 - b) * curvatures_.col(i) + b * curvatures_.col(i + 1);
 }
 
 }  // namespace footing::motion

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "common/body/segments.h"
+#include <Eigen/Core>
+
 #include "common/base/result.h"
-#include "common/virtual/motion/marker_sets.h"
+#include "common/body/body.h"
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
 

@@ -1,11 +1,17 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "common/base/result.h"
+#include "common/body/landmarks.h"
+#include "common/body/skeleton.h"
 
 namespace footing::motion {
 
@@ -43,5 +49,57 @@ FileAxes GuessAxes(const MarkerTracks& tracks);
 /// p_W of a place in the file's axes, and of a whole set of tracks.
 Eigen::Vector3d ToWorld(FileAxes axes, const Eigen::Vector3d& p);
 MarkerTracks ToWorld(FileAxes axes, MarkerTracks tracks);
+
+/// Where the markers of one laboratory's set sit. Names are blank-separated; in those of a side "@"
+/// stands for the side's spelling. Of several names the mean is taken, of those after a "|" only if
+/// none before is there. An empty field is a marker that the set does not have.
+struct MarkerSet {
+  std::string_view name;
+  std::string_view left, right;  ///< Spellings of "@", blank-separated: either may stand in a file.
+  std::string_view asis, psis;   ///< Iliac spines; of a set with one sacral marker, that one.
+  std::string_view knee_lateral, knee_medial;
+  std::string_view ankle_lateral, ankle_medial;
+  std::string_view heel, toe, fifth_metatarsal;
+  std::string_view shoulder;
+  double shoulder_over_joint_m;  ///< How far those stand over the joint's centre, along the trunk.
+  std::string_view elbow_lateral, elbow_medial;
+  std::string_view wrist_radius, wrist_ulna, hand;
+  std::string_view cervicale, sternum, head;
+};
+
+/// All sets known: opencap, plug-in-gait, cmu41, vicon53, imd29.
+std::span<const MarkerSet> MarkerSets();
+
+/// The set whose markers the tracks have, by name or, with an empty name, the one of which most are
+/// there. Names of markers may have a subject before a ':'. An error lists the sets, or what the
+/// one named lacks.
+Result<MarkerSet> FindMarkerSet(const MarkerTracks& tracks, std::string_view name = "");
+
+/// Index into tracks of the markers that one field names for a side (0 left, 1 right).
+std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std::string_view field,
+                           int side);
+
+/// Which joints can carry each marker of a trial.
+struct MarkerCarriers {
+  std::vector<int> candidates;  ///< For a marker of which the set does not say where it sits.
+  std::vector<int> known;       ///< Of each track; -1 where the set does not say.
+
+  std::vector<int> Of(std::size_t track) const {
+    return known[track] < 0 ? candidates : std::vector<int>{known[track]};
+  }
+};
+
+MarkerCarriers FindCarriers(const body::Skeleton& skeleton, const body::Landmarks& landmarks,
+                            const MarkerTracks& tracks, const MarkerSet& set);
+
+/// Places of the landmarks in one frame, in W; nothing where the markers were not seen.
+using Centres = std::array<std::optional<Eigen::Vector3d>, body::kLandmarkCount>;
+
+/// Joint centres from the markers of one frame (z up): hips by regression from the iliac spines (M.
+/// Harrington et al., J. Biomechanics 40 (2007) 595, Table 4); knees, ankles, elbows and wrists
+/// midway between the markers of both sides or, with one marker, inwards from it by half the
+/// joint's width; shoulders below their markers; the base of the neck between C7 and sternum. kHips
+/// is the middle of the hips, kHead the middle of the head's markers; kToe the toe's marker.
+Centres JointCentres(const MarkerTracks& tracks, const MarkerSet& set, Eigen::Index frame);
 
 }  // namespace footing::motion

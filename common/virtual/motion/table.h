@@ -1,11 +1,16 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "common/base/result.h"
+#include "common/base/text.h"
+#include "common/virtual/motion/markers.h"
 
 /// MOT and STO: OpenSim's tables of numbers over time, and the ground forces in them.
 namespace footing::motion {
@@ -45,5 +50,32 @@ struct GroundForces {
 /// NAMEmx or "torque" in place of "force". OpenSim's axes (y up) are turned into W. Places beyond
 /// 20 m are taken for millimetres, as some files have them. Times must be at equal steps.
 Result<GroundForces> ToGroundForces(const Table& table, const std::string& file);
+
+inline bool IsRate(double rate_hz) { return rate_hz >= 0.1 && rate_hz <= 100'000; }
+
+/// Rate of a step that a file gives with few digits: 0.0083333 s is 120 Hz, not 120.0005.
+inline double RateOfStep(double step_s) {
+  const double rate_hz = 1 / step_s;
+  const double whole = std::round(rate_hz);
+  return whole > 0 && std::abs(rate_hz - whole) < 1e-4 * whole ? whole : rate_hz;
+}
+
+/// Beyond any number of a motion file in any unit; squares and sums of such numbers stay finite.
+inline constexpr double kGreatestValue = 1e9;
+
+/// A number of a motion file: finite, and no greater than that.
+inline std::optional<double> ToValue(std::string_view word) {
+  const auto number = text::ToNumber(word);
+  return number && std::abs(*number) <= kGreatestValue ? number : std::nullopt;
+}
+
+/// TRC: marker places as text, a row a frame (Motion Analysis; OpenSim).
+/// Reads one in its own axes (OpenSim's: FileAxes::kYUp). A marker whose three fields are empty,
+/// not numbers ("NaN"), or all exactly 0 was not seen in that frame. `file` is the name for errors,
+/// which say the line and what was expected there.
+Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file);
+
+/// Writes one in millimetres. What was read from our own output is written again byte for byte.
+std::string WriteTrc(const MarkerTracks& tracks, const std::string& name);
 
 }  // namespace footing::motion

@@ -9,14 +9,13 @@
 
 #include "common/body/body.h"
 #include "common/body/landmarks.h"
-#include "common/runtime/data_file.h"
+#include "common/runtime/files.h"
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/bvh.h"
-#include "common/virtual/motion/c3d.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/motion/half_turns.h"
 #include "common/virtual/motion/marker_fit.h"
-#include "common/virtual/motion/trc.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/motion/table.h"
 
 namespace footing::motion_files {
 namespace {

@@ -1,17 +1,83 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <deque>
 
+#include <Eigen/Core>
+
+#include "common/stream/gait.h"
 #include "common/stream/track.h"
-#include "common/virtual/devices/random.h"
-#include "common/virtual/people/ability.h"
-#include "common/virtual/people/jump_timing.h"
-#include "common/virtual/people/sight.h"
+#include "common/stream/user_interface.h"
+#include "common/virtual/devices/noise.h"
 #include "common/virtual/people/style.h"
 
 namespace footing::users {
+
+/// What a user has learned of an interface from the demonstration and in five minutes' practice:
+/// what it can command, and how long that takes.
+struct Ability {
+  double walk_min_mps = 0.3, walk_max_mps = 1.3;
+  double run_min_mps = 1.6, run_max_mps = 4;
+  double jump_mps = 1.5, jump_height_m = 0.35;
+  double turn_per_step_rad = 0.0873;
+  bool turns_by_degrees = true;  ///< False: none or all of turn_per_step_rad.
+  bool jumps_at_once = false;    ///< One gesture is one jump; else it lasts as long as the jump.
+  double turn_delay_s = 0.02;    ///< From the user's motion to a changed command.
+  /// From the user's motion to the top of the character's first leap, out of a run and out of a
+  /// walk: means of the jumps of straight tracks. The user corrects it by what it sees.
+  double run_jump_s = 0.8;
+  double walk_jump_s = 0.85;
+};
+
+/// Of a command given at once, without a body.
+Ability DirectAbility();
+/// The speeds are those of the demonstration (docs/interfaces.md), the delays what five minutes of
+/// practice teach. `turn_by` is of the leg interface.
+Ability AbilityWith(stream::UserInterface interface,
+                    stream::TurnSource turn_by = stream::TurnSource::kHead);
+
+/// When a user has to begin the motion of a jump: the top of the character's leap is to be over the
+/// middle of the pit. A habit per gait, that every leap seen corrects in the direction in which it
+/// was off; and no moment is hit twice.
+class JumpTiming {
+ public:
+  /// `run_s` and `walk_s`: what the user knows by practice from the begin of the motion to the top
+  /// of the leap. `error_s` is the standard deviation of the own moment.
+  JumpTiming(double run_s, double walk_s, double error_s, std::uint64_t seed);
+
+  /// How long before the middle of the pit, at the present speed, the next jump has to be begun, s.
+  double LeadS(stream::Gait from) const;
+  /// The motion of a jump over the pit whose middle is at `middle_m` along the track begins.
+  void Begin(double time_s, stream::Gait from, double speed_mps, double middle_m);
+  /// What the character does, as the user sees it: its gait, its place along the track, and the
+  /// height of its COM.
+  void See(double time_s, stream::Gait gait, double along_m, double com_m);
+  /// The pit was not crossed; `gait` is what the character ran. Who had not begun, or had seen no
+  /// leap yet, was too late.
+  void Fail(stream::Gait gait);
+  /// The character stands somewhere else.
+  void End();
+  /// Whether a jump was begun that was not seen yet.
+  bool waits() const { return begun_s_ >= 0 && !jumped_; }
+
+ private:
+  double& HabitOf(bool run) { return run ? run_s_ : walk_s_; }
+  void Learn();
+
+  noise::Random random_;
+  double run_s_, walk_s_;
+  double sd_s_;
+  double error_s_ = 0;   ///< Of the next moment.
+  double begun_s_ = -1;  ///< Negative: no jump under way, or it was learned from.
+  bool tried_ = false;   ///< A jump over this pit was begun.
+  bool from_run_ = false;
+  double speed_mps_ = 1;  ///< When it began.
+  double middle_m_ = 0;
+  bool jumped_ = false;                      ///< The character was seen to jump,
+  bool leapt_ = false;                       ///< and to come down from its first leap.
+  double from_m_ = 0;                        ///< Height of the COM when it began to jump.
+  double highest_m_ = 0, highest_at_m_ = 0;  ///< Of the first leap, and where.
+};
 
 /// A user who drives along a track: sees the track 3 to 12 m ahead and the character as it was a
 /// reaction time ago, reckons with the turns wanted since, steers for the centre line, slows down

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "common/base/result.h"
 
 /// Synthetic motion: a short script of key poses becomes a motion that a person could make, with
@@ -73,5 +75,13 @@ Result<Script> ParseScript(const std::string& text, const std::string& origin);
 /// Names of the built-in scripts, and one of them; a usage error lists the names.
 std::vector<std::string> BuiltInScriptNames();
 Result<Script> BuiltInScript(const std::string& name);
+
+/// The channels through time at equal steps: one entry a frame, from 0 to the script's end. A step
+/// lifts its foot by itself.
+std::vector<Values> Sample(const Script& script, double rate_hz);
+
+/// How the pressure wanders while somebody stands: a sum of sines of 0.1 to 1.1 Hz with this root
+/// mean square each way, 0 at time 0. The same for everybody.
+Eigen::Vector2d Sway(double sway_m, double t_s);
 
 }  // namespace footing::choreography

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "common/body/kinematics.h"
 #include "common/base/units.h"
+#include "common/body/kinematics.h"
 #include "common/virtual/motion/joint_angles.h"
 
 namespace footing::eval {

@@ -1,10 +1,64 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace footing::plot {
+
+/// Lines of one figure in the plane: x1, y1, x2, y2; y up, any unit, the same in all panels.
+using Sticks = std::vector<std::array<double, 4>>;
+
+/// One picture: the reference under what is compared with it.
+struct Panel {
+  std::string name;
+  Sticks reference;
+  Sticks figure;
+};
+
+/// Stick figures side by side, at one scale, on one ground line (y = 0). Lines that are not finite
+/// are left out.
+std::string StickPlot(const std::string& title, const std::vector<Panel>& panels);
+
+/// Plots as SVG text.
+inline constexpr std::array kColours{"#1f5fa8", "#c2571a", "#3d8b37",
+                                     "#8a4fa0", "#7a7a7a", "#b8860b"};
+inline constexpr const char* kReferenceColour = "#222";
+
+std::string Number(double value);
+
+/// The opening of an SVG of this size, white.
+std::string Open(double width, double height);
+
+/// Text with its special characters escaped; `more` are further attributes.
+std::string Label(double x, double y, const std::string& anchor, const std::string& text,
+                  const std::string& more = "");
+
+std::string Line(double x1, double y1, double x2, double y2, const std::string& colour,
+                 const std::string& more = "");
+
+/// A filled area, or with two corners a line. Metres, x to the right, y up.
+struct PlanShape {
+  std::vector<std::array<double, 2>> corners;
+  std::string colour;
+};
+
+struct PlanPanel {
+  std::string name;
+  std::vector<PlanShape> shapes;  ///< Later ones are drawn over earlier ones.
+};
+
+/// What a colour means.
+struct PlanKey {
+  std::string colour;
+  std::string meaning;
+};
+
+/// Plan views at one scale, in rows, with a scale of 10 m and the colours' meanings under them.
+/// Shapes that are not finite are left out.
+std::string PlanPlot(const std::string& title, const std::vector<PlanPanel>& panels,
+                     const std::vector<PlanKey>& keys);
 
 struct Curve {
   std::string name;

@@ -1,13 +1,13 @@
 #include "daemon/offline/analysis/pose_metrics.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "common/base/rotation.h"
-#include "common/base/quantile.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
-#include "daemon/offline/analysis/hip_angles.h"
 
 namespace footing::eval {
 namespace {
@@ -218,6 +218,22 @@ ordered_json PoseScore::Json() const {
   json["hip_about_mean_deg"] =
       RadiansToDegrees(MeanAboutMean(hip_turns_rad_[0]) + MeanAboutMean(hip_turns_rad_[1])) / 2;
   return json;
+}
+
+HipAngles HipAnglesDeg(const Eigen::Matrix3d& R_PT, int side) {
+  const double outwards = side == 0 ? 1 : -1;
+  const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ(), along = R_PT * down;
+  const Eigen::Matrix3d about = LeastTurn(down, along).toRotationMatrix().transpose() * R_PT;
+  return {RadiansToDegrees(std::atan2(along.x(), -along.z())),
+          RadiansToDegrees(std::asin(std::clamp(outwards * along.y(), -1.0, 1.0))),
+          RadiansToDegrees(-outwards * std::atan2(about(1, 0), about(0, 0)))};
+}
+
+HipAngles Difference(const HipAngles& a, const HipAngles& b) {
+  const auto off = [](double one, double other) {
+    return std::abs(std::remainder(one - other, 360.0));
+  };
+  return {off(a.flexion, b.flexion), off(a.abduction, b.abduction), off(a.rotation, b.rotation)};
 }
 
 }  // namespace footing::eval

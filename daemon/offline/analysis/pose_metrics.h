@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <vector>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
@@ -86,5 +87,23 @@ class PoseScore {
   /// mean is what a person's markers or way of standing turn in all frames alike.
   std::array<std::vector<Eigen::Vector3d>, 2> hip_turns_rad_;
 };
+
+/// A hip as gait analysis reports it, degrees; 0 in the T-pose, in which the thighs hang straight
+/// down. Flexion is positive forwards, abduction outwards, rotation inwards.
+struct HipAngles {
+  double flexion = 0;    ///< Of the thigh in the sagittal plane of the pelvis.
+  double abduction = 0;  ///< Of the thigh out of that plane.
+  /// Of the thigh about itself, beyond the least turn that brings it down to where it points. The
+  /// cardan angles of Grood & Suntay (1983) differ from this when the hip is both bent and spread,
+  /// and have no rotation where the thigh points sideways.
+  double rotation = 0;
+};
+
+/// `R_PT`: how the thigh has turned in the pelvis since the T-pose, in axes of the pelvis that are
+/// W's in the T-pose (x forward, y left, z up). Side 0 is left.
+HipAngles HipAnglesDeg(const Eigen::Matrix3d& R_PT, int side);
+
+/// Magnitudes of the differences, each 180 degrees at most.
+HipAngles Difference(const HipAngles& a, const HipAngles& b);
 
 }  // namespace footing::eval

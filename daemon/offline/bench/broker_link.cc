@@ -2,12 +2,144 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
-#include <charconv>
-#include <utility>
+
+#include "common/runtime/clock.h"
+#include "daemon/offline/bench/waiting.h"
 
 namespace footing::bench {
+namespace {
+
+sockaddr_in Loopback(std::uint16_t port) {
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  at.sin_port = htons(port);
+  return at;
+}
+
+std::uint16_t FreePort() {
+  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in at = Loopback(0);
+  socklen_t size = sizeof(at);
+  const bool bound = bind(probe, reinterpret_cast<sockaddr*>(&at), sizeof(at)) == 0 &&
+                     getsockname(probe, reinterpret_cast<sockaddr*>(&at), &size) == 0;
+  close(probe);
+  return bound ? ntohs(at.sin_port) : 0;
+}
+
+bool Listens(std::uint16_t port) {
+  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const sockaddr_in at = Loopback(port);
+  const bool connected = connect(probe, reinterpret_cast<const sockaddr*>(&at), sizeof(at)) == 0;
+  close(probe);
+  return connected;
+}
+
+/// Debian has servers where an ordinary user's PATH does not look.
+std::string Find(const std::string& program) {
+  for (const char* const folder : {"/usr/sbin/", "/usr/bin/", "/usr/local/sbin/"}) {
+    if (access((folder + program).c_str(), X_OK) == 0) return folder + program;
+  }
+  return "";
+}
+
+}  // namespace
+
+const char* NameOf(BrokerKind kind) {
+  return kind == BrokerKind::kNats ? "nats-server" : "mosquitto";
+}
+
+std::unique_ptr<Broker> Broker::Start(BrokerKind kind) {
+  const std::string program = Find(NameOf(kind));
+  if (program.empty()) {
+    std::cerr << "left out: " << NameOf(kind) << " is not installed" << std::endl;
+    return nullptr;
+  }
+  std::unique_ptr<Broker> broker(new Broker(kind));
+  broker->address_ = TcpAddress();
+  broker->address_.port = FreePort();
+  if (!broker->Spawn(program)) {
+    std::cerr << "left out: " << program << " does not start" << std::endl;
+    return nullptr;
+  }
+  return broker;
+}
+
+bool Broker::Spawn(const std::string& program) {
+  const std::string port = std::to_string(address_.port);
+  std::vector<std::string> words = {program, "-a", "127.0.0.1", "-p", port};
+  if (kind_ == BrokerKind::kMosquitto) {
+    config_ = "/tmp/footing-bench-" + std::to_string(getpid()) + "-mosquitto.conf";
+    // By default it would drop what is more than 1000 messages behind.
+    std::ofstream(config_) << "listener " << port << " 127.0.0.1\nallow_anonymous true\n"
+                           << "persistence false\nmax_queued_messages 0\nset_tcp_nodelay true\n";
+    words = {program, "-c", config_};
+  }
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+  }
+  const int error =
+      posix_spawn(&process_, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) {
+    process_ = -1;
+    return false;
+  }
+  constexpr int kTries = 500;
+  constexpr std::int64_t kPauseNs = 10'000'000;
+  for (int i = 0; i < kTries; ++i) {
+    if (Listens(address_.port)) return true;
+    clock::SleepUntil(clock::MonotonicNs() + kPauseNs);
+  }
+  return false;
+}
+
+Broker::~Broker() {
+  if (process_ > 0) {
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+  }
+  if (!config_.empty()) std::remove(config_.c_str());
+}
+
+double Broker::CpuSeconds() const {
+  std::ifstream file("/proc/" + std::to_string(process_) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  std::string skipped;
+  double user = 0, system = 0;
+  // Behind the name: state is the first, utime and stime the 12th and 13th.
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
 namespace {
 
 constexpr std::string_view kTopic = "t";
@@ -174,5 +306,120 @@ BrokerLink::~BrokerLink() { implementation_->Close(); }
 
 bool BrokerLink::ready() const { return implementation_->ready(); }
 void BrokerLink::Publish(std::string_view payload) { implementation_->Publish(payload); }
+
+namespace {
+
+// liblsl's lsl_c.h: cft_string, nominal_srate of 0 for an irregular rate, seconds.
+constexpr int kStringFormat = 3;
+constexpr double kIrregularRate = 0;
+constexpr double kConnectS = 5;
+constexpr double kPullS = 0.2;
+constexpr int kBufferedS = 60;
+
+template <typename Function>
+bool Load(void* library, const char* name, Function*& function) {
+  function = reinterpret_cast<Function*>(dlsym(library, name));
+  return function != nullptr;
+}
+
+}  // namespace
+
+/// What is used of liblsl's C interface; its handles are pointers.
+struct LslLink::Library {
+  void* handle = nullptr;
+  void* (*create_info)(const char*, const char*, std::int32_t, double, int, const char*) = nullptr;
+  void (*destroy_info)(void*) = nullptr;
+  std::int32_t (*resolve)(void**, std::uint32_t, const char*, const char*, std::int32_t,
+                          double) = nullptr;
+  void* (*create_outlet)(void*, std::int32_t, std::int32_t) = nullptr;
+  void (*destroy_outlet)(void*) = nullptr;
+  std::int32_t (*push)(void*, const char**, const std::uint32_t*) = nullptr;
+  void* (*create_inlet)(void*, std::int32_t, std::int32_t, std::int32_t) = nullptr;
+  void (*destroy_inlet)(void*) = nullptr;
+  void (*open)(void*, double, std::int32_t*) = nullptr;
+  double (*pull)(void*, char**, std::uint32_t*, std::int32_t, double, std::int32_t*) = nullptr;
+  void (*destroy_string)(char*) = nullptr;
+
+  bool LoadAll() {
+    for (const char* const name : {"liblsl.so.2", "liblsl.so"}) {
+      if (handle == nullptr) handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    }
+    return handle != nullptr && Load(handle, "lsl_create_streaminfo", create_info) &&
+           Load(handle, "lsl_destroy_streaminfo", destroy_info) &&
+           Load(handle, "lsl_resolve_byprop", resolve) &&
+           Load(handle, "lsl_create_outlet", create_outlet) &&
+           Load(handle, "lsl_destroy_outlet", destroy_outlet) &&
+           Load(handle, "lsl_push_sample_buf", push) &&
+           Load(handle, "lsl_create_inlet", create_inlet) &&
+           Load(handle, "lsl_destroy_inlet", destroy_inlet) &&
+           Load(handle, "lsl_open_stream", open) && Load(handle, "lsl_pull_sample_buf", pull) &&
+           Load(handle, "lsl_destroy_string", destroy_string);
+  }
+};
+
+std::unique_ptr<LslLink> LslLink::Start(std::function<void(std::string_view)> on_payload) {
+  auto library = std::make_unique<Library>();
+  if (!library->LoadAll()) {
+    std::cerr << "left out: liblsl is not installed" << std::endl;
+    return nullptr;
+  }
+  std::unique_ptr<LslLink> link(new LslLink(std::move(library), std::move(on_payload)));
+  if (!link->Connect()) {
+    std::cerr << "left out: an inlet of liblsl does not find its outlet" << std::endl;
+    return nullptr;
+  }
+  return link;
+}
+
+LslLink::LslLink(std::unique_ptr<Library> library,
+                 std::function<void(std::string_view payload)> on_payload)
+    : library_(std::move(library)), on_payload_(std::move(on_payload)) {}
+
+LslLink::~LslLink() {
+  stop_.Raise();
+  if (thread_.joinable()) thread_.join();
+  if (inlet_ != nullptr) library_->destroy_inlet(inlet_);
+  if (outlet_ != nullptr) library_->destroy_outlet(outlet_);
+}
+
+bool LslLink::Connect() {
+  const std::string id = "footing-bench-" + std::to_string(getpid());
+  void* const info =
+      library_->create_info("footing-bench", "ticks", 1, kIrregularRate, kStringFormat, id.c_str());
+  if (info == nullptr) return false;
+  outlet_ = library_->create_outlet(info, 0, kBufferedS);
+  library_->destroy_info(info);
+  void* found = nullptr;
+  if (outlet_ == nullptr ||
+      library_->resolve(&found, 1, "source_id", id.c_str(), 1, kConnectS) < 1) {
+    return false;
+  }
+  inlet_ = library_->create_inlet(found, kBufferedS, 0, 0);
+  library_->destroy_info(found);
+  if (inlet_ == nullptr) return false;
+  std::int32_t error = 0;
+  library_->open(inlet_, kConnectS, &error);
+  if (error != 0) return false;
+  thread_ = std::thread([this] { PullOnThread(); });
+  return true;
+}
+
+void LslLink::Publish(std::string_view payload) {
+  const char* samples[] = {payload.data()};
+  const std::uint32_t lengths[] = {static_cast<std::uint32_t>(payload.size())};
+  library_->push(outlet_, samples, lengths);
+}
+
+void LslLink::PullOnThread() {
+  while (!stop_.raised()) {
+    char* sample = nullptr;
+    std::uint32_t length = 0;
+    std::int32_t error = 0;
+    library_->pull(inlet_, &sample, &length, 1, kPullS, &error);
+    if (sample == nullptr) continue;
+    on_payload_(std::string_view(sample, length));
+    library_->destroy_string(sample);
+  }
+}
 
 }  // namespace footing::bench

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
-#include "daemon/offline/bench/row.h"
+#include "daemon/offline/bench/pairs.h"
 
 namespace {
 

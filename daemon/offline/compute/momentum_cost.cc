@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "common/body/kinematics.h"
-#include "common/body/momentum.h"
 #include "common/runtime/clock.h"
 
 namespace footing::timing {

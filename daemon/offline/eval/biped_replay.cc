@@ -4,10 +4,9 @@
 
 #include "common/wire/wire.h"
 #include "daemon/offline/eval/replay.h"
-#include "daemon/simulation/engine/track_world.h"
-#include "daemon/simulation/gait_service/engine_files.h"
+#include "daemon/simulation/engine/state.h"
 #include "daemon/simulation/gait_service/applied_input.h"
-#include "daemon/simulation/gait_service/effective_config.h"
+#include "daemon/simulation/gait_service/config.h"
 
 namespace footing::eval {
 namespace {

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "daemon/simulation/engine/engine.h"
+#include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/biped/world.h"
+#include "daemon/simulation/engine/engine.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::eval {
 
@@ -69,5 +71,87 @@ class Walker {
   const engine::EngineOutput* output_ = nullptr;
   double leg_gap_min_m_ = INFINITY;
 };
+
+/// Pits to jump over: a straight track with pits at random places, and the pilot who commands.
+struct Pit {
+  double near_m;  ///< Edges, along x.
+  double far_m;
+};
+
+struct PitCourse {
+  std::string track;  ///< Text for GaitEngine::Create.
+  std::vector<Pit> pits;
+};
+
+/// Pits of one width after run-ups of 16 to 20 m, which is what a run of 3 m/s needs to be one
+/// again after a jump, for as long as `length_m`; then level ground. Which step comes before an
+/// edge is thus random.
+PitCourse MakePitCourse(double width_m, double length_m, Random& random);
+
+/// Commands a gait along a course. A run is commanded to jump when the edge is `lead_s` away, and
+/// to run again once it has landed behind the pit; other gaits get one command all along. All are
+/// steered towards the middle.
+class PitPilot {
+ public:
+  PitPilot(const PitCourse& course, const biped::GaitCommand& command, double height_m,
+           double lead_s)
+      : course_(course), command_(command), height_m_(height_m), lead_s_(lead_s) {}
+
+  /// The command after this output; counts the pits on the way.
+  biped::GaitCommand Command(const engine::EngineOutput& output);
+
+  /// Pits passed: the COM beyond the far edge and the character still up 2 s later.
+  int crossed() const { return crossed_; }
+  /// Pits passed or failed at. One that was still open when the trial ended is neither.
+  int met(bool fell) const { return crossed_ + (fell && over_ ? 1 : 0); }
+
+ private:
+  const PitCourse& course_;
+  biped::GaitCommand command_;
+  double height_m_;
+  double lead_s_;
+  std::size_t next_ = 0;
+  bool over_ = false;  ///< Reached the pit, not yet passed it.
+  bool jumping_ = false;
+  double passed_s_ = -1;
+  int crossed_ = 0;
+};
+
+/// The rise of a jump that carries `speed_mps` over the pit with 15 cm to spare at either edge.
+double SensibleHeight(double width_m, double speed_mps);
+
+/// Pushes of one size in evenly spaced directions, at evenly spaced moments of one cycle (two
+/// steps, or one hop of a jump).
+struct PushSweep {
+  biped::GaitCommand command;
+  int directions = 8;
+  int phases = 12;
+  double impulse_ns = 16;  ///< Over 0.1 s.
+};
+
+struct PushSweepResult {
+  std::vector<int> falls;  ///< By direction; direction 0 pushes from behind, then to the left.
+  int pushes = 0;
+  double leg_gap_min_m = INFINITY;  ///< Between the legs (leg_gap.h), after pushes that size.
+  /// Found by bisection to 1 N s, up to 64: as if who survives a push survived all smaller ones.
+  double largest_survived_ns = 0;
+
+  int all_falls() const;
+};
+
+/// Settles at the command (the seed draws a kick of 2 N s on the way and the first moment), keeps
+/// the engine's state at each moment, and goes on from there with each push for 5 s. Adds to
+/// `result.falls` and `pushes`; `largest_survived_ns` becomes the smallest over calls.
+Result<void> RunPushSweep(const PushSweep& sweep, std::uint64_t seed, PushSweepResult& result);
+
+/// Writes plots like the paper's Figures 5 to 8 into a folder, which is made where it is missing,
+/// each over the part of the motion that has most of what it shows: vertical COM where the COM
+/// rises and falls most, horizontal COM where it leans furthest, the shoulder's and the elbow's
+/// angles where an arm swings most, and stick figures of the deepest crouch (run/crouch.h),
+/// whose title says where there is none. Files of before are overwritten. Returns the names.
+Result<std::vector<std::string>> WriteFigures(const pose_run::PoseRun& run,
+                                              const reconstruction::Models& models,
+                                              const reconstruction::Options& options,
+                                              const std::string& folder);
 
 }  // namespace footing::eval

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "common/base/result.h"
 #include "daemon/offline/eval/replay.h"
+#include "daemon/offline/eval/report.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::eval {
@@ -17,5 +21,20 @@ bool IsPoseRecording(const std::vector<v1::Tick>& ticks);
 /// lag and subjects are those of the recording; the models come from `data_folder` (empty: the
 /// installed ones). InvalidData when the recording does not begin with the engine's first step.
 Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks, const std::string& data_folder);
+
+/// The ticks of one server out of a recording, in their order, without snapshots.
+struct Recorded {
+  std::vector<v1::Tick> sensor;      ///< Of footingd: status, raw and features.
+  std::vector<v1::Tick> simulation;  ///< Of footing-sim: characters, inputs, tracks and tables.
+};
+
+/// Reads the topics that a replay needs. Of a tick that is there twice (the recorder reconnected)
+/// the first is taken.
+Result<Recorded> ReadRecorded(const std::string& path);
+
+/// `footing-eval replay FILE.mcap`: runs a recording's raw reports and engine inputs again, at
+/// their stamps, and compares the features and the biped's state hashes with the recorded ones bit
+/// for bit. Exit code 1 when something differs, 4 when the recording holds nothing to run again.
+void AddReplayCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::eval

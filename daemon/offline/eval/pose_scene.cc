@@ -4,16 +4,16 @@
 #include <filesystem>
 #include <utility>
 
-#include "common/runtime/data_file.h"
 #include "common/model/model.h"
-#include "common/virtual/people/perform.h"
-#include "common/virtual/people/script.h"
+#include "common/runtime/files.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/standard_layout.h"
 #include "common/virtual/options/load.h"
+#include "common/virtual/options/sensor_options.h"
+#include "common/virtual/people/perform.h"
+#include "common/virtual/people/script.h"
 #include "common/wire/model_file.h"
-#include "daemon/offline/pose_run/activity.h"
-#include "daemon/offline/pose_run/standing.h"
+#include "daemon/offline/pose_run/pose_run.h"
 
 namespace footing::eval {
 namespace {
@@ -211,6 +211,16 @@ Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& fi
     models.push_back(std::move(*model));
   }
   return reconstruction::MakeModels(models);
+}
+
+void AddMotionOptions(CLI::App& command, PoseSceneOptions& scene) {
+  command
+      .add_option("--motion", scene.motion,
+                  "Motion: BVH, AMC, TRC or C3D file, or choreography script (.json)")
+      ->required();
+  sensor_options::AddMotionFile(command, scene.skeleton, scene.bvh_unit_m);
+  command.add_option("--still", scene.still,
+                     "Marker file of the same person standing still, TRC or C3D");
 }
 
 }  // namespace footing::eval

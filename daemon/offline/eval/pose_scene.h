@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "common/base/result.h"
-#include "daemon/offline/pose_run/held_hands.h"
-#include "daemon/offline/pose_run/insole_run.h"
 #include "daemon/offline/pose_run/plates.h"
 #include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/pose/arm_model.h"
@@ -48,5 +48,8 @@ Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& 
 /// carries.
 Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,
                                               const std::string& motion, bool same_person = false);
+
+/// Adds --motion, --skeleton and --still to a command that evaluates a motion.
+void AddMotionOptions(CLI::App& command, PoseSceneOptions& scene);
 
 }  // namespace footing::eval

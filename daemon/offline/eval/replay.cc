@@ -5,7 +5,7 @@
 #include <set>
 #include <span>
 
-#include "common/recording/recorded_identity.h"
+#include "common/recording/recorded_session.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/service/hub.h"
 

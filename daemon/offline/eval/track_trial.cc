@@ -1,16 +1,190 @@
 #include "daemon/offline/eval/track_trial.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <system_error>
 
 #include "common/base/units.h"
+#include "common/board/layout.h"
+#include "common/stream/interface_roles.h"
 #include "common/virtual/people/driver.h"
 #include "common/virtual/people/person.h"
-#include "daemon/offline/eval/user_devices.h"
-#include "daemon/simulation/mapping/held_jump.h"
 #include "daemon/simulation/biped/trial.h"
+#include "daemon/simulation/mapping/boards.h"
 
 namespace footing::eval {
+
+void Agreement::Add(double time_s, stream::Gait meant, stream::Gait commanded, double delay_s,
+                    bool still_stands) {
+  if (meant_.empty() || meant_.back().gait != meant) meant_.push_back({time_s, meant});
+  // The newest change from before the delay is what was meant when it began.
+  while (meant_.size() > 1 && meant_[1].time_s <= time_s - delay_s) meant_.pop_front();
+  const bool agrees =
+      still_stands || std::any_of(meant_.begin(), meant_.end(),
+                                  [&](const Meant& past) { return past.gait == commanded; });
+  ++count_;
+  agree_ += agrees ? 1 : 0;
+  if (meant_.size() == 1 && meant_.front().time_s <= time_s - delay_s) {
+    const stream::Gait shown = agrees && still_stands ? meant : commanded;
+    ++table_[stream::IndexOf(meant)][stream::IndexOf(shown)];
+  }
+}
+
+void Agreement::Pool(const Agreement& other) {
+  count_ += other.count_;
+  agree_ += other.agree_;
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    for (std::size_t j = 0; j < table_.size(); ++j) table_[i][j] += other.table_[i][j];
+  }
+}
+
+void Delay::Add(double time_s) {
+  ++count;
+  sum_s += time_s;
+  sum_s2 += time_s * time_s;
+}
+
+void Delay::Pool(const Delay& other) {
+  count += other.count;
+  sum_s += other.sum_s;
+  sum_s2 += other.sum_s2;
+}
+
+double Delay::sd_s() const {
+  if (count < 2) return 0;
+  const double n = static_cast<double>(count);
+  return std::sqrt(std::max(0.0, sum_s2 - sum_s * sum_s / n) / (n - 1));
+}
+
+void JumpDelays::Add(double time_s, bool meant, bool commanded, bool jumps, double delay_s) {
+  if (meant) meant_s_ = time_s;
+  if (time_s - meant_s_ > delay_s) begun_s_.reset();
+  // A gesture in a jump, or under a command, asks for nothing new.
+  if (meant && !meant_ && !commanded_ && !jumps) begun_s_ = time_s;
+  if (commanded && !commanded_ && begun_s_) {
+    to_command_.Add(time_s - *begun_s_);
+    commanded_s_ = time_s;
+    begun_s_.reset();
+  }
+  if (!commanded) commanded_s_.reset();
+  if (jumps && commanded_s_) {
+    to_take_off_.Add(time_s - *commanded_s_);
+    commanded_s_.reset();
+  }
+  meant_ = meant;
+  commanded_ = commanded;
+}
+
+void JumpDelays::Restart() {
+  begun_s_.reset();
+  commanded_s_.reset();
+  meant_ = commanded_ = false;
+}
+
+void JumpDelays::Pool(const JumpDelays& other) {
+  to_command_.Pool(other.to_command_);
+  to_take_off_.Pool(other.to_take_off_);
+}
+
+void JumpEvents::Decide(bool recognised, bool late) {
+  begun_s_.reset();
+  ++meant_count_;
+  recognised_ += recognised ? 1 : 0;
+  late_ += late ? 1 : 0;
+}
+
+void JumpEvents::Add(double time_s, bool meant, bool commanded, double delay_s) {
+  if (meant && !meant_) {
+    if (begun_s_) Decide(false, false);  // The next gesture comes before the last one's command.
+    begun_s_ = time_s;
+  }
+  if (meant) meant_s_ = time_s;
+  meant_ = meant;
+  const bool lately = meant_s_ && time_s - *meant_s_ <= delay_s;
+  if (commanded && !commanded_) {
+    ++commanded_count_;
+    not_meant_ += lately ? 0 : 1;
+  }
+  commanded_ = commanded;
+  if (!begun_s_) return;
+  overdue_ = time_s - *begun_s_ > delay_s;
+  if (commanded) {
+    Decide(true, overdue_);
+  } else if (!lately) {
+    Decide(false, false);
+  }
+}
+
+void JumpEvents::Restart() {
+  if (begun_s_ && overdue_) Decide(false, false);
+  begun_s_.reset();
+  meant_ = commanded_ = overdue_ = false;
+}
+
+void JumpEvents::Pool(const JumpEvents& other) {
+  meant_count_ += other.meant_count_;
+  recognised_ += other.recognised_;
+  late_ += other.late_;
+  commanded_count_ += other.commanded_count_;
+  not_meant_ += other.not_meant_;
+}
+
+namespace {
+
+constexpr const char* kColumns =
+    "seed,time,place,aside,heading_error,speed,wanted,meant,commanded,runs,phase,"
+    "commanded_speed,wanted_turn,commanded_turn,failures,next,frequency,phase_between,"
+    "elevation,turn_share\n"
+    ",s,m,m,deg,m/s,,,,,,m/s,deg,deg,,,Hz,deg,deg,1\n";
+
+}  // namespace
+
+Result<TrackTrace> TrackTrace::Create(const std::string& path) {
+  TrackTrace trace;
+  if (path.empty()) return trace;
+  trace.path_ = path;
+  trace.file_.open(path);
+  trace.file_ << kColumns;
+  if (!trace.file_.flush()) return trace.CannotWrite();
+  return trace;
+}
+
+Error TrackTrace::CannotWrite() const {
+  return Failure("cannot write " + path_ + ": " +
+                 std::generic_category().message(error_ != 0 ? error_ : errno) +
+                 "; name another file");
+}
+
+Result<void> TrackTrace::Flush() {
+  if (!file_.is_open() || file_.flush()) return {};
+  return CannotWrite();
+}
+
+void TrackTrace::Add(stream::Gait wanted, stream::Gait meant, double turn_rad,
+                     const engine::EngineOutput& output) {
+  if (!file_.is_open()) return;
+  const stream::GaitState& gait = output.gait;
+  const stream::InterfaceState& shown = output.interface;
+  const auto degrees = [](double angle_rad) { return RadiansToDegrees(angle_rad); };
+  file_ << seed_ << ',' << output.time_s << ',' << output.trial.distance_m << ','
+        << output.trial.lateral_offset_m << ',' << degrees(output.trial.heading_error_rad) << ','
+        << gait.speed_mps << ',' << stream::Name(wanted) << ',' << stream::Name(meant) << ','
+        << stream::Name(gait.commanded_gait) << ',' << stream::Name(gait.gait) << ',' << gait.phase
+        << ',' << gait.commanded_speed_mps << ',' << degrees(turn_rad) << ','
+        << degrees(gait.commanded_turn_rad) << ',' << gait.falls << ','
+        << stream::Name(shown.next_gait) << ',';
+  if (shown.frequency_valid) file_ << shown.frequency_hz;
+  file_ << ',';
+  if (shown.phase_valid) file_ << degrees(shown.phase_rad);
+  file_ << ',';
+  if (shown.forearms.valid) file_ << degrees(shown.forearms.elevation_rad);
+  file_ << ',';
+  if (shown.turn.valid) file_ << shown.turn.share;
+  file_ << '\n';
+  if (!file_ && error_ == 0) error_ = errno;
+}
+
 namespace {
 
 using stream::Gait;
@@ -220,6 +394,106 @@ Result<TrackResult> RunTrack(const std::string& track_text, const TrackUser& use
                       "\" has no finish line: give --seconds");
   }
   return TrackTrial(std::move(engine).value(), user, trace).Run();
+}
+
+namespace {
+
+using stream::DeviceRole;
+using stream::TurnSource;
+using stream::UserInterface;
+
+constexpr double kBoardHz = 60;
+constexpr double kBoardGapM = 0.02;
+/// A Nunchuk's stick has about so many counts from its centre to the rim.
+constexpr double kStickCounts = 95;
+/// White noise of a board's cell, kg; and its gains' spread (Bartlett, Ting & Bingham 2014).
+constexpr double kCellNoiseKg = 0.05;
+constexpr double kCellGainSpread = 0.01;
+
+/// Device numbers are those of the roles.
+std::uint32_t DeviceOf(DeviceRole role) { return static_cast<std::uint32_t>(role); }
+
+/// Boards have no features.
+std::vector<features::Member> MembersFor(UserInterface interface, TurnSource turn_by) {
+  std::vector<features::Member> members;
+  if (interface == UserInterface::kBoards) return members;
+  for (const DeviceRole role : stream::RolesOf(interface, turn_by)) {
+    members.push_back({DeviceOf(role), role});
+  }
+  return members;
+}
+
+}  // namespace
+
+UserDevices::UserDevices(UserInterface interface, TurnSource turn_by, std::uint64_t seed)
+    : interface_(interface), random_(seed), chain_(MembersFor(interface, turn_by)) {
+  for (const std::uint64_t board : {1u, 2u}) {
+    cells_.emplace_back(virtual_sensors::CellErrorConfig{
+        .gain_spread = kCellGainSpread, .noise_kg = kCellNoiseKg, .seed = seed + board});
+  }
+}
+
+void UserDevices::TakeRemotes(const users::Felt& felt) {
+  const std::int64_t now_ns = SecondsToNanoseconds(static_cast<double>(ticks_) * kTickS);
+  std::uint32_t mounted_roles = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(felt.remote_count); ++i) {
+    const users::FeltRemote& remote = felt.remotes[i];
+    const auto reading = wrists::Read(sensor_, remote.specific_force_S_mps2, random_);
+    chain_.Add(DeviceOf(remote.role), now_ns, reading.specific_force_mps2, reading.clipped_axes);
+    // Shins and the trunk have a mounting; hands and the head need none.
+    const bool mounted = remote.role == DeviceRole::kLeftLeg ||
+                         remote.role == DeviceRole::kRightLeg || remote.role == DeviceRole::kTrunk;
+    if (mounted) mounted_roles |= stream::RoleBit(remote.role);
+  }
+  mapping::TakeFeatures(chain_.Compute(now_ns), mounted_roles, inputs_);
+}
+
+void UserDevices::TakeStick(const users::Felt& felt) {
+  mapping::StickInput& stick = inputs_.stick;
+  stick.present = true;
+  stick.x = std::round(felt.stick_x * kStickCounts) / kStickCounts;
+  stick.y = std::round(felt.stick_y * kStickCounts) / kStickCounts;
+  if (felt.button_a && !stick.pressed) ++stick.presses;
+  stick.pressed = felt.button_a;
+}
+
+void UserDevices::TakeBoards(const users::Felt& felt) {
+  const double now_s = static_cast<double>(ticks_) * kTickS;
+  if (now_s < board_due_s_) return;
+  board_due_s_ += 1 / kBoardHz;
+  const auto places = virtual_sensors::OneFootEach(kBoardGapM);
+  for (std::size_t foot = 0; foot < 2; ++foot) {
+    const auto load = virtual_sensors::LoadBoard(places[foot], felt.feet[foot]);
+    const auto read = cells_[foot].Advance(load.corners_n, 1 / kBoardHz);
+    const board::PlateReading reading = plates_[foot].Advance({read[0], read[1], read[2], read[3]});
+    mapping::BoardInput& board = foot == 0 ? inputs_.left_board : inputs_.right_board;
+    board = {.present = true, .corners_n = read, .cop_valid = reading.cop_valid};
+    if (!reading.cop_valid) continue;
+    const virtual_sensors::BoardPlace& place = places[foot];
+    const Eigen::Vector2d cop_W_m = board::InWorld(
+        {place.middle_m.x(), place.middle_m.y(), place.yaw_rad}, reading.cop_x_m, reading.cop_y_m);
+    board.cop_x_m = cop_W_m.x();
+    board.cop_y_m = cop_W_m.y();
+  }
+}
+
+mapping::Inputs UserDevices::Take(const users::Felt& felt) {
+  ++ticks_;
+  switch (interface_) {
+    case UserInterface::kUnspecified:
+    case UserInterface::kWrist:
+    case UserInterface::kArm:
+    case UserInterface::kLeg:
+      TakeRemotes(felt);
+      break;
+    case UserInterface::kJoystick:
+      TakeStick(felt);
+      break;
+    case UserInterface::kBoards:
+      TakeBoards(felt);
+      break;
+  }
+  return inputs_;
 }
 
 }  // namespace footing::eval

@@ -1,18 +1,152 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "common/base/result.h"
+#include "common/board/geometry.h"
+#include "common/stream/gait.h"
 #include "common/stream/user_interface.h"
-#include "common/virtual/people/grip.h"
-#include "daemon/offline/eval/statistics.h"
+#include "common/virtual/devices/accelerometer.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/people/style.h"
+#include "daemon/offline/analysis/features_chain.h"
+#include "daemon/offline/eval/gait.h"
 #include "daemon/offline/eval/gait_trial.h"
-#include "daemon/offline/eval/agreement.h"
-#include "daemon/offline/eval/jump_delays.h"
-#include "daemon/offline/eval/jump_events.h"
-#include "daemon/offline/eval/trace.h"
+#include "daemon/simulation/engine/engine.h"
+#include "daemon/simulation/mapping/inputs.h"
 
 namespace footing::eval {
+
+/// How the commanded gait follows the one that the user's motion means.
+class Agreement {
+ public:
+  using Table = std::array<std::array<std::uint64_t, stream::kGaits.size()>, stream::kGaits.size()>;
+
+  /// One moment. The command agrees when it is what the motion has meant at some time within
+  /// `delay_s`; `again` is what a command of the past may still stand for, besides.
+  void Add(double time_s, stream::Gait meant, stream::Gait commanded, double delay_s,
+           bool still_stands);
+  /// Begins again, without what was meant before.
+  void Restart() { meant_.clear(); }
+  void Pool(const Agreement& other);
+
+  std::uint64_t count() const { return count_; }
+  double share() const {
+    return count_ > 0 ? static_cast<double>(agree_) / static_cast<double>(count_) : 1;
+  }
+  /// Moments by the gait meant (row), once it has been meant for the delay, and the gait commanded.
+  const Table& table() const { return table_; }
+
+ private:
+  struct Meant {
+    double time_s = 0;  ///< From then on.
+    stream::Gait gait = stream::Gait::kStep;
+  };
+  std::deque<Meant> meant_;
+  std::uint64_t count_ = 0, agree_ = 0;
+  Table table_{};
+};
+
+/// Mean and spread of a time.
+struct Delay {
+  std::uint64_t count = 0;
+  double sum_s = 0, sum_s2 = 0;
+
+  void Add(double time_s);
+  void Pool(const Delay& other);
+  double mean_s() const { return count > 0 ? sum_s / static_cast<double>(count) : 0; }
+  double sd_s() const;
+};
+
+/// Where the time of a jump goes: from the begin of the user's gesture to the command, which is the
+/// interface's part, and from the command until the character leaves the ground, which is the
+/// gait's. It is the spread of both, not their mean, that a user cannot learn.
+class JumpDelays {
+ public:
+  /// One moment, every few milliseconds: whether the user means, the interface commands and the
+  /// character does a jump. A gesture without a command within `delay_s` of its end does not count,
+  /// nor does a command that ends without a jump.
+  void Add(double time_s, bool meant, bool commanded, bool jumps, double delay_s);
+  /// The character fell: what was under way does not count.
+  void Restart();
+  void Pool(const JumpDelays& other);
+
+  const Delay& to_command() const { return to_command_; }
+  const Delay& to_take_off() const { return to_take_off_; }  ///< From the command.
+
+ private:
+  bool meant_ = false, commanded_ = false;  ///< Of the last moment.
+  double meant_s_ = 0;                      ///< When a jump was last meant.
+  std::optional<double> begun_s_;           ///< Of a gesture without a command yet.
+  std::optional<double> commanded_s_;       ///< Of its command, while the character does not jump.
+  Delay to_command_, to_take_off_;
+};
+
+/// Which of a user's gestures of a jump became a command, and which commanded jumps nobody meant.
+/// The share of time that Agreement counts does not show them: a gesture may be shorter than the
+/// delay that a command is allowed.
+class JumpEvents {
+ public:
+  /// One moment, every few milliseconds. A gesture is recognised when a jump is commanded while it
+  /// lasts or within `delay_s` of its end, and late when that is longer than `delay_s` after its
+  /// begin. A command was meant when it begins at most that long after a moment of a gesture.
+  void Add(double time_s, bool meant, bool commanded, double delay_s);
+  /// The character fell: a gesture that had no command yet does not count, unless the delay was
+  /// over.
+  void Restart();
+  void Pool(const JumpEvents& other);
+
+  std::uint64_t meant() const { return meant_count_; }
+  std::uint64_t recognised() const { return recognised_; }
+  std::uint64_t late() const { return late_; }  ///< Of recognised().
+  std::uint64_t commanded() const { return commanded_count_; }
+  std::uint64_t not_meant() const { return not_meant_; }
+  /// Shares of meant() and of commanded().
+  double recall() const { return Share(recognised_, meant_count_, 1); }
+  double false_share() const { return Share(not_meant_, commanded_count_, 0); }
+
+ private:
+  static double Share(std::uint64_t part, std::uint64_t all, double of_none) {
+    return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : of_none;
+  }
+  void Decide(bool recognised, bool late);
+
+  bool meant_ = false, commanded_ = false;  ///< Of the last moment.
+  std::optional<double> begun_s_;           ///< Of a gesture that is not decided yet.
+  std::optional<double> meant_s_;           ///< When a jump was last meant.
+  bool overdue_ = false;                    ///< The delay of that gesture is over.
+  std::uint64_t meant_count_ = 0, recognised_ = 0, late_ = 0;
+  std::uint64_t commanded_count_ = 0, not_meant_ = 0;
+};
+
+/// A CSV of what a trial's user meant, what the interface made of it and what the character did:
+/// one row per look of the user (10 ms), a row of units under the names.
+class TrackTrace {
+ public:
+  /// Nothing is written to an empty path. Fails when the file cannot be created.
+  static Result<TrackTrace> Create(const std::string& path);
+
+  /// The rows that follow are of this trial.
+  void Begin(std::uint64_t seed) { seed_ = seed; }
+  void Add(stream::Gait wanted, stream::Gait meant, double turn_rad,
+           const engine::EngineOutput& output);
+  /// Whether all rows so far are in the file: fails where the disk is full.
+  Result<void> Flush();
+
+ private:
+  Error CannotWrite() const;
+
+  std::string path_;
+  int error_ = 0;  ///< errno of the first row that could not be written.
+  std::ofstream file_;
+  std::uint64_t seed_ = 0;
+};
 
 /// Who runs a trial, and with what.
 struct TrackUser {
@@ -47,5 +181,33 @@ struct TrackResult {
 /// One trial on a track, put back after each failure, kicked once by 2 N s. UsageError when the
 /// track has no finish line and the user no `seconds`.
 Result<TrackResult> RunTrack(const std::string& track, const TrackUser& user, TrackTrace& trace);
+
+/// The devices of a synthetic user and footingd's chain behind them: what the sensors make of what
+/// they feel, then features, stick, or corner forces and COP. Of the kinds that the user has.
+class UserDevices {
+ public:
+  static constexpr double kTickS = 0.01;
+
+  /// `turn_by` is of the leg interface.
+  UserDevices(stream::UserInterface interface, stream::TurnSource turn_by, std::uint64_t seed);
+
+  /// The inputs of the next tick.
+  mapping::Inputs Take(const users::Felt& felt);
+
+ private:
+  void TakeRemotes(const users::Felt& felt);
+  void TakeStick(const users::Felt& felt);
+  void TakeBoards(const users::Felt& felt);
+
+  stream::UserInterface interface_;
+  noise::Random random_;
+  wrists::SensorModel sensor_;
+  Chain chain_;
+  std::vector<virtual_sensors::CellErrors> cells_;
+  std::array<board::Plate, 2> plates_;
+  std::int64_t ticks_ = 0;
+  double board_due_s_ = 0;
+  mapping::Inputs inputs_;
+};
 
 }  // namespace footing::eval

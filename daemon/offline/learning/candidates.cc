@@ -6,6 +6,43 @@
 namespace footing::learning {
 namespace {
 
+/// The next step of one weight. Where the slope still points the way of the last step, the parabola
+/// is followed only while it is steep enough; else the step grows by `growth`.
+double NextStep(double slope, double last_slope, double last_step,
+                const QuickpropOptions& options) {
+  const double shrink = options.growth / (1 + options.growth);
+  const bool downhill_still = slope * last_step < 0;
+  double step = 0;
+  if (last_step == 0 || downhill_still) step -= options.epsilon * slope;
+  if (last_step == 0) return step;
+  const bool beyond = last_step < 0 ? slope >= shrink * last_slope : slope <= shrink * last_slope;
+  if (beyond) return step + options.growth * last_step;
+  const double most = options.growth * std::abs(last_step);
+  const double curvature = last_slope - slope;
+  if (curvature == 0) return step + options.growth * last_step;
+  return step + std::clamp(last_step * slope / curvature, -most, most);
+}
+
+}  // namespace
+
+Quickprop::Quickprop(Eigen::Index rows, Eigen::Index columns, const QuickpropOptions& options)
+    : options_(options),
+      last_steps_(Eigen::MatrixXd::Zero(rows, columns)),
+      last_slopes_(Eigen::MatrixXd::Zero(rows, columns)) {}
+
+void Quickprop::Step(const Eigen::MatrixXd& slopes, Eigen::MatrixXd& weights) {
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    double& weight = weights.data()[i];
+    const double slope = slopes.data()[i] + options_.decay * weight;
+    const double step = NextStep(slope, last_slopes_.data()[i], last_steps_.data()[i], options_);
+    weight += step;
+    last_steps_.data()[i] = step;
+    last_slopes_.data()[i] = slope;
+  }
+}
+
+namespace {
+
 /// Rows that stay in the processor's cache from one product to the next.
 constexpr Eigen::Index kBlockRows = 256;
 /// Standard deviation (of values within +-1/2) under which a unit counts as no news: its output
@@ -149,5 +186,43 @@ template NewUnit TrainCandidates(const CandidateTask<double>&, const CandidateOp
                                  noise::Random&);
 template NewUnit TrainCandidates(const CandidateTask<float>&, const CandidateOptions&,
                                  noise::Random&);
+
+namespace {
+
+constexpr double kPrimeOffset = 0.1;
+
+}  // namespace
+
+void SigmoidOutputs::Evaluate(const Eigen::MatrixXd& units, const Eigen::MatrixXd& targets) {
+  values = Sigmoid((units * weights).array()).matrix();
+  errors = ((values - targets).array() * (0.25 - values.array().square() + kPrimeOffset)).matrix();
+}
+
+int SigmoidOutputs::Train(const Eigen::MatrixXd& units, const Eigen::MatrixXd& targets, double near,
+                          const OutputOptions& options) {
+  QuickpropOptions scaled = options.quickprop;
+  scaled.epsilon /= static_cast<double>(units.rows());
+  Quickprop quickprop(weights.rows(), weights.cols(), scaled);
+  double last_error = 0;
+  int quit = options.patience;
+  for (int epoch = 0; epoch < options.epochs_max; ++epoch) {
+    Evaluate(units, targets);
+    if (Worst(targets) < near) return epoch;
+    const double error = errors.squaredNorm();
+    if (epoch == 0 || std::abs(error - last_error) > options.change * last_error) {
+      last_error = error;
+      quit = epoch + options.patience;
+    } else if (epoch >= quit) {
+      return epoch;
+    }
+    quickprop.Step(units.transpose() * errors, weights);
+  }
+  Evaluate(units, targets);
+  return options.epochs_max;
+}
+
+double SigmoidOutputs::Worst(const Eigen::MatrixXd& targets) const {
+  return (values - targets).cwiseAbs().maxCoeff();
+}
 
 }  // namespace footing::learning

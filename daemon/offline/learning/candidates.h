@@ -2,10 +2,30 @@
 
 #include <Eigen/Core>
 
-#include "common/virtual/devices/random.h"
-#include "daemon/offline/learning/quickprop.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::learning {
+
+/// Quickprop (Fahlman 1988): for every weight a parabola through the last two slopes, whose lowest
+/// point is the next step.
+struct QuickpropOptions {
+  double epsilon = 1;  ///< Part of the slope that is gone down besides, or instead at a start.
+  double growth = 2;   ///< mu: a step is at most this many times the last one.
+  double decay = 0;    ///< Of the weights, added to the slope.
+};
+
+/// State of one set of weights; goes down the slopes it is given.
+class Quickprop {
+ public:
+  Quickprop(Eigen::Index rows, Eigen::Index columns, const QuickpropOptions& options);
+
+  /// Moves `weights` by one step; `slopes` are the derivatives of what is to become least.
+  void Step(const Eigen::MatrixXd& slopes, Eigen::MatrixXd& weights);
+
+ private:
+  QuickpropOptions options_;
+  Eigen::MatrixXd last_steps_, last_slopes_;
+};
 
 /// The hidden unit's s(x) = 1 / (1 + exp(-x)) - 1/2, and its derivative from its value:
 /// s' = 1/4 - s^2.
@@ -76,5 +96,30 @@ struct NewUnit {
 template <typename Scalar>
 NewUnit TrainCandidates(const CandidateTask<Scalar>& task, const CandidateOptions& options,
                         noise::Random& random);
+
+struct OutputOptions {
+  int epochs_max = 200;
+  int patience = 8;
+  double change = 0.01;  ///< Part of the error that counts as a change.
+  QuickpropOptions quickprop = {.epsilon = 1, .growth = 2, .decay = 1e-4};
+};
+
+/// Sigmoid outputs, trained by Quickprop. The derivative gets 0.1 more (Fahlman 1988), so that an
+/// output that is wrong with conviction can come back.
+struct SigmoidOutputs {
+  Eigen::MatrixXd weights;  ///< Columns of `units` x outputs.
+  Eigen::MatrixXd values;   ///< Rows x outputs, within +-1/2.
+  Eigen::MatrixXd errors;   ///< (value - target) (s' + 0.1): what candidates follow.
+
+  /// Evaluates `weights` on `units`.
+  void Evaluate(const Eigen::MatrixXd& units, const Eigen::MatrixXd& targets);
+
+  /// Returns the epochs used. Stops early once every value is nearer to its target than `near`.
+  int Train(const Eigen::MatrixXd& units, const Eigen::MatrixXd& targets, double near,
+            const OutputOptions& options);
+
+  /// The greatest |value - target|.
+  double Worst(const Eigen::MatrixXd& targets) const;
+};
 
 }  // namespace footing::learning

@@ -1,12 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "daemon/offline/learning/examples.h"
+#include <Eigen/Core>
+
+#include "common/body/body.h"
+#include "common/virtual/motion/motion.h"
+#include "daemon/offline/learning/mlp.h"
 #include "daemon/simulation/momentum/horizontal_network.h"
 
 /// The horizontal COM from the loads of two boards (pose paper, section 4.2).
@@ -59,5 +62,18 @@ struct SwaySettings {
   double noise_sd = 0.0013;  ///< Of a cell: 0.1 kg of 75 kg.
 };
 LoadClip MakeSway(const SwaySettings& settings, std::uint64_t seed);
+
+struct BoardLoadSettings {
+  double noise_kg = 0.1;  ///< Of a cell.
+  bool limited = true;    ///< Boards have an edge: virtual_sensors::LoadBoard.
+  bool mirrored = false;  ///< The mirror image at the plane y = 0.
+};
+
+/// What two boards under the feet would measure while the body moves (common/virtual/devices), at
+/// momentum::kNetworkRateHz. Each board's middle is where its foot mostly is. The origin is half
+/// way between the points of the soles where the COP is at rest, where the feet mostly are; as in
+/// use, when it comes from a T-pose. `motion` is aligned (alignment.h); `body` is of its skeleton.
+LoadClip BoardLoads(const motion::Motion& motion, const body::Body& body,
+                    const BoardLoadSettings& settings, std::uint64_t seed);
 
 }  // namespace footing::learning

@@ -1,13 +1,57 @@
 #include "daemon/offline/learning/mlp.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "common/base/result.h"
-#include "common/virtual/devices/random.h"
+#include "common/base/units.h"
+#include "common/virtual/devices/noise.h"
 #include "daemon/offline/learning/candidates.h"
 
 namespace footing::learning {
+
+Split SplitInTime(const Examples& all, double fraction) {
+  const auto last =
+      static_cast<Eigen::Index>(std::floor(fraction * static_cast<double>(all.rows())));
+  const Eigen::Index first = all.rows() - last;
+  return {.train = {all.inputs.topRows(first), all.targets.topRows(first)},
+          .validation = {all.inputs.bottomRows(last), all.targets.bottomRows(last)}};
+}
+
+Examples Joined(const std::vector<const Examples*>& parts) {
+  FOOTING_CHECK(!parts.empty());
+  Eigen::Index rows = 0;
+  for (const Examples* part : parts) rows += part->rows();
+  Examples all{.inputs = Eigen::MatrixXd(rows, parts.front()->inputs.cols()),
+               .targets = Eigen::MatrixXd(rows, parts.front()->targets.cols())};
+  Eigen::Index row = 0;
+  for (const Examples* part : parts) {
+    all.inputs.middleRows(row, part->rows()) = part->inputs;
+    all.targets.middleRows(row, part->rows()) = part->targets;
+    row += part->rows();
+  }
+  return all;
+}
+
+Examples WithFeedbackNoise(const Examples& examples, const FeedbackNoise& noise,
+                           std::uint64_t seed) {
+  if (noise.groups.empty()) return examples;
+  Examples noisy{.inputs = examples.inputs.replicate(noise.copies, 1),
+                 .targets = examples.targets.replicate(noise.copies, 1)};
+  noise::Random random(seed);
+  for (Eigen::Index row = 0; row < noisy.rows(); ++row) {
+    for (const std::vector<Eigen::Index>& group : noise.groups) {
+      const double common = noise.common_sd * random.Normal();
+      for (const Eigen::Index column : group) {
+        noisy.inputs(row, column) += common + noise.own_sd * random.Normal();
+      }
+    }
+  }
+  return noisy;
+}
+
 namespace {
 
 Eigen::MatrixXd WithBias(const Eigen::MatrixXd& values) {
@@ -131,6 +175,23 @@ MlpResult TrainMlp(const Examples& train, const Examples& validation, const MlpO
   result.train_mse = MeanSquaredError(result.network, train);
   result.validation_mse = MeanSquaredError(result.network, validation);
   return result;
+}
+
+Examples TwoSpirals(int denser) {
+  const int points = 96 * denser + 1;
+  Examples examples{.inputs = Eigen::MatrixXd(2 * points, 2),
+                    .targets = Eigen::MatrixXd(2 * points, 1)};
+  for (int i = 0; i < points; ++i) {
+    const double along = static_cast<double>(i) / denser;
+    const double radius = 6.5 * (104 - along) / 104;
+    const double angle = along * kPi / 16;
+    const Eigen::RowVector2d point(radius * std::sin(angle), radius * std::cos(angle));
+    examples.inputs.row(2 * i) = point;
+    examples.inputs.row(2 * i + 1) = -point;
+    examples.targets(2 * i, 0) = 0.5;
+    examples.targets(2 * i + 1, 0) = -0.5;
+  }
+  return examples;
 }
 
 }  // namespace footing::learning

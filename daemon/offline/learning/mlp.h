@@ -3,11 +3,49 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/model/model.h"
-#include "daemon/offline/learning/examples.h"
-#include "daemon/offline/learning/scaling.h"
+#include <Eigen/Core>
 
+#include "common/model/model.h"
+#include "daemon/offline/learning/pose_regression.h"
+
+/// Trainers of small networks. The same examples, options and seed give the same bits.
 namespace footing::learning {
+
+/// What a network learns from: row p of `inputs` gives row p of `targets`, in the data's own units.
+struct Examples {
+  Eigen::MatrixXd inputs;
+  Eigen::MatrixXd targets;
+
+  Eigen::Index rows() const { return inputs.rows(); }
+};
+
+/// Training and validation, split in time: neighbours in a recording are nearly equal, so that rows
+/// drawn at random would test a network by what it learned from.
+struct Split {
+  Examples train, validation;
+};
+
+/// The last `fraction` of the rows, in [0, 1), is for validation.
+Split SplitInTime(const Examples& all, double fraction);
+
+/// The rows of all, one after the other. At least one; equal columns.
+Examples Joined(const std::vector<const Examples*>& parts);
+
+/// Noise on inputs that are the network's own earlier outputs in use. A network trained on perfect
+/// ones goes on from its first error to the end of the world (closed loop, pose paper, section 4.2:
+/// the COM positions); one trained with noise learns to come back.
+struct FeedbackNoise {
+  /// Columns of one signal at several instants, a group each: an estimate that is wrong is wrong by
+  /// nearly the same at each of them.
+  std::vector<std::vector<Eigen::Index>> groups;
+  double common_sd = 0;  ///< Of the error that a row's group shares, in the inputs' unit.
+  double own_sd = 0;     ///< Of each column's own error besides.
+  int copies = 1;        ///< Of every row, each with other noise.
+};
+
+/// The rows with noise on their inputs; targets stay true. Without groups, the rows as they are.
+Examples WithFeedbackNoise(const Examples& examples, const FeedbackNoise& noise,
+                           std::uint64_t seed);
 
 /// A perceptron with one layer of hidden units s(x) = 1 / (1 + exp(-x)) - 1/2 and linear outputs:
 /// what cascade correlation is compared with. Inputs and targets are scaled as the cascade's are.
@@ -57,5 +95,10 @@ struct MlpResult {
 /// Back-propagation with momentum over batches drawn again each epoch.
 MlpResult TrainMlp(const Examples& train, const Examples& validation, const MlpOptions& options,
                    std::uint64_t seed);
+
+/// Two interlocking spirals of three turns (Lang & Witbrock 1988, as Fahlman & Lebiere used them):
+/// 194 points (x, y) within 6.5 -> +-1/2. With `denser` > 1, that many times as many points along
+/// the same spirals.
+Examples TwoSpirals(int denser = 1);
 
 }  // namespace footing::learning

@@ -5,14 +5,77 @@
 #include <cmath>
 #include <sstream>
 #include <utility>
+#include <vector>
 
+#include "common/base/result.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
-#include "common/virtual/motion/edit.h"
-#include "common/virtual/devices/body_course.h"
-#include "common/virtual/devices/ground_reaction.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/noise.h"
 #include "common/virtual/devices/scene.h"
+#include "common/virtual/motion/edit.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::learning {
+namespace {
+
+constexpr int kRounds = 8;
+constexpr double kOutlierMedians = 2.5;  // Of the median distance.
+
+Eigen::Matrix2d Turn(double yaw_rad) {
+  return body::AxisRotation(body::Axis::kZ, yaw_rad).topLeftCorner<2, 2>();
+}
+
+FloorPlacement Fit(const Eigen::Matrix2Xd& from, const Eigen::Matrix2Xd& to,
+                   const std::vector<Eigen::Index>& counts) {
+  const Eigen::Matrix2Xd a = from(Eigen::all, counts), b = to(Eigen::all, counts);
+  const Eigen::Vector2d a_mean = a.rowwise().mean(), b_mean = b.rowwise().mean();
+  const Eigen::Matrix2d moment = (b.colwise() - b_mean) * (a.colwise() - a_mean).transpose();
+  FloorPlacement placement;
+  placement.yaw_rad = std::atan2(moment(1, 0) - moment(0, 1), moment(0, 0) + moment(1, 1));
+  placement.shift_m = b_mean - Turn(placement.yaw_rad) * a_mean;
+  return placement;
+}
+
+}  // namespace
+
+FloorPlacement PlaceFloor(const Eigen::Matrix2Xd& from, const Eigen::Matrix2Xd& to) {
+  FOOTING_CHECK(from.cols() == to.cols() && from.cols() >= 3);
+  std::vector<Eigen::Index> counts(static_cast<std::size_t>(from.cols()));
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = static_cast<Eigen::Index>(i);
+  FloorPlacement placement = Fit(from, to, counts);
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Matrix2Xd moved = (Turn(placement.yaw_rad) * from).colwise() + placement.shift_m;
+    const Eigen::VectorXd off_m = (moved - to).colwise().norm();
+    const double median_m = text::Median({off_m.begin(), off_m.end()});
+    counts.clear();
+    double squares = 0;
+    for (Eigen::Index i = 0; i < off_m.size(); ++i) {
+      if (off_m(i) > kOutlierMedians * median_m + 1e-9) continue;
+      counts.push_back(i);
+      squares += off_m(i) * off_m(i);
+    }
+    placement = Fit(from, to, counts);
+    placement.points = std::ssize(counts);
+    placement.rms_m = std::sqrt(squares / static_cast<double>(counts.size()));
+  }
+  return placement;
+}
+
+motion::Motion Placed(const motion::Motion& motion, const FloorPlacement& placement) {
+  motion::Motion placed = motion;
+  const Eigen::Matrix3d R = body::AxisRotation(body::Axis::kZ, placement.yaw_rad);
+  const Eigen::Vector3d shift_m(placement.shift_m.x(), placement.shift_m.y(), 0);
+  const body::Joint& root = motion.skeleton.joint(0);
+  for (Eigen::Index t = 0; t < motion.frames(); ++t) {
+    const Eigen::Matrix3d R_WJ = body::JointRotation(root, motion.q.col(t));
+    body::SetJointRotation(root, R * R_WJ, placed.q.col(t));
+    placed.q.col(t).head<3>() = R * motion.q.col(t).head<3>() + shift_m;
+  }
+  return motion::Continuous(std::move(placed));
+}
+
 namespace {
 
 namespace sensors = virtual_sensors;
@@ -170,6 +233,73 @@ std::vector<LoadClip> OwnLoads(const OwnTake& take) {
                             course.com_m.col(at).head<2>() - origin_m});
   }
   return clips;
+}
+
+namespace {
+
+/// The pose between two frames; angles do not jump from one to the next.
+Eigen::VectorXd PoseAt(const motion::Motion& motion, double time_s) {
+  const double place = time_s * motion.rate_hz;
+  const auto i = std::clamp<Eigen::Index>(static_cast<Eigen::Index>(place), 0, motion.frames() - 2);
+  const double share = std::clamp(place - static_cast<double>(i), 0.0, 1.0);
+  return (1 - share) * motion.q.col(i) + share * motion.q.col(i + 1);
+}
+
+reconstruction::HandInput FistOf(const body::Body& body, const body::Kinematics& at, int side,
+                                 double noise_m, noise::Random& random) {
+  reconstruction::HandInput hand;
+  hand.valid = true;
+  hand.p_W_m = body::Place(body::Fist(body, side), at);
+  for (double& value : hand.p_W_m) value += noise_m * random.Normal();
+  hand.sd_m.setConstant(std::max(noise_m, 0.001));
+  return hand;
+}
+
+}  // namespace
+
+Result<void> AddOwnExamples(const OwnTake& take, const reconstruction::Models& basis,
+                            const OwnExampleSettings& settings, PoseExamples& examples) {
+  reconstruction::Options options;
+  options.rate_hz = settings.rate_hz;
+  auto made = reconstruction::Reconstruction::Create(take.body, basis, options);
+  if (!made) return made.error();
+  noise::Random random(settings.seed);
+  body::Kinematics at(take.body.skeleton);
+  const std::size_t before = examples.poses.size();
+  const auto frames =
+      static_cast<std::size_t>(std::min(take.session.duration_s, take.to_s()) * settings.rate_hz);
+  double since_s = 0;  // Duration for which both the T-pose and the motion have been there.
+  for (std::size_t i = 0; i < frames; ++i) {
+    const double time_s = static_cast<double>(i) / settings.rate_hz;
+    const bool moves = time_s >= take.from_s();
+    Eigen::VectorXd pose;
+    if (moves) {
+      pose = PoseAt(take.motion, take.alignment.ToMotion(time_s));
+      body::ComputeKinematics(take.body.skeleton, pose, at);
+    }
+    reconstruction::Inputs inputs;
+    inputs.loads = LoadsAt(take.session, time_s);
+    for (std::size_t side = 0; side < reconstruction::kHands; ++side) {
+      if (const auto hand = HandAt(take.session, side, time_s)) {
+        inputs.hands[side] = {true, hand->p_W_m, hand->sd_m};
+      } else if (moves && take.session.hands[side].empty()) {
+        inputs.hands[side] =
+            FistOf(take.body, at, static_cast<int>(side), settings.hand_noise_m, random);
+      }
+    }
+    const auto& output = made->Advance(inputs);
+    since_s = moves && output.calibrated ? since_s + 1 / settings.rate_hz : 0;
+    const bool measured = inputs.loads.feet[0].valid && inputs.loads.feet[1].valid &&
+                          inputs.hands[0].valid && inputs.hands[1].valid;
+    if (since_s < settings.settled_s || !measured) continue;
+    const double into_s = take.alignment.ToMotion(time_s);
+    const int piece = settings.first_piece + static_cast<int>(into_s / settings.piece_s);
+    examples.Add(*made, settings.cues, pose, piece % kFolds);
+  }
+  if (examples.poses.size() > before) return {};
+  return InvalidData(take.session.name +
+                     ": nothing of the motion is left after its T-pose; stand in the T-pose before "
+                     "moving, with both hands seen");
 }
 
 }  // namespace footing::learning

@@ -4,17 +4,32 @@
 #include <string>
 #include <vector>
 
-#include "common/body/body.h"
+#include <Eigen/Core>
+
 #include "common/base/result.h"
+#include "common/body/body.h"
 #include "common/virtual/motion/motion.h"
 #include "daemon/offline/learning/horizontal_com.h"
 #include "daemon/offline/learning/pose_regression.h"
-#include "daemon/offline/learning/recorded_session.h"
-#include "daemon/offline/learning/registration.h"
 #include "daemon/offline/learning/time_alignment.h"
 #include "daemon/simulation/reconstruction/models.h"
 
 namespace footing::learning {
+
+/// How the floor of one recording lies in that of another: turned about the vertical, then moved.
+struct FloorPlacement {
+  double yaw_rad = 0;
+  Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
+  double rms_m = 0;         ///< What is left, of the points that count.
+  Eigen::Index points = 0;  ///< That count.
+};
+
+/// Least squares of `from` on `to`, a column a pair, without the pairs that are left far off: feet
+/// beyond a board's edge. There must be three pairs.
+FloorPlacement PlaceFloor(const Eigen::Matrix2Xd& from, const Eigen::Matrix2Xd& to);
+
+/// The motion turned and moved as a whole.
+motion::Motion Placed(const motion::Motion& motion, const FloorPlacement& placement);
 
 /// A recording of boards and the motion that was captured beside it, on one clock and one floor.
 struct OwnTake {

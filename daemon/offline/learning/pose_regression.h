@@ -1,15 +1,48 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "common/model/model.h"
-#include "daemon/offline/learning/ridge.h"
-#include "daemon/simulation/reconstruction/features.h"
+#include "common/virtual/motion/motion.h"
+#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/reconstruction/models.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::learning {
+
+/// Cosines of the scaled inputs in random directions, beside the inputs: random Fourier features of
+/// a Gaussian kernel (Rahimi & Recht 2007).
+struct RandomWaves {
+  int count = 0;
+  double kernel_width = 0.5;  ///< In parts of the root of the inputs' number.
+  std::uint64_t seed = 1;
+};
+
+/// Ridge regression (Hoerl & Kennard 1970) whose penalty is chosen by leaving out folds.
+struct RidgeFit {
+  Eigen::VectorXd mean, scale;  ///< Of the inputs: (x - mean) scale, cut at +-4.
+  Eigen::MatrixXd weights;      ///< outputs x inputs, on all examples.
+  Eigen::VectorXd offset;
+  Eigen::MatrixXd waves;  ///< waves x inputs: cos(waves x + phases), of scaled inputs.
+  Eigen::VectorXd phases;
+  Eigen::MatrixXd wave_weights;  ///< outputs x waves.
+  Eigen::MatrixXd errors;  ///< Scaled, a column an example, each by weights that have not seen it.
+  double ridge = 0;        ///< The penalty, a part of each input's variance,
+  double error = 0;        ///< the root mean square of `errors`' columns,
+  double spread = 0;       ///< beside that of the outputs about their mean.
+};
+
+/// A column of `x` and `y` an example; `folds`: 0 to fold_count - 1, which fold each is left out
+/// with. `output_scale`: by which the outputs' errors count. `weights`: how often each example
+/// counts, > 0; empty: once.
+RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& folds,
+                  int fold_count, const Eigen::VectorXd& output_scale,
+                  const RandomWaves& waves = {}, const Eigen::VectorXd& weights = {});
 
 /// By what a pose is to be foreseen: hands and feet alone, or with the momentum too.
 enum class PoseCues { kPosture, kMomentum };
@@ -53,5 +86,57 @@ FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen
 /// Their names begin with `prefix`.
 void AppendTensors(const FittedPoseRegression& fitted, model::Model& model,
                    const std::string& prefix = "");
+
+/// What an arm regression is trained with, both arms as left ones.
+struct ArmExamples {
+  std::vector<arms::ArmFeatures::Values> features;
+  std::vector<arms::Directions> directions;
+  std::vector<int> folds;  ///< 0 to fold_count - 1.
+  int fold_count = 0;      ///< At least two.
+};
+
+struct FittedArm {
+  arms::ArmModel model;
+  double ridge = 0, error = 0, spread = 0;  ///< As of RidgeFit.
+};
+
+/// The covariance is that of the errors on the folds that were left out.
+FittedArm FitArm(const ArmExamples& examples);
+
+void AppendTensors(const arms::ArmModel& fitted, model::Model& model);
+
+/// Columns to mean 0 and standard deviation 1. A constant column becomes 0.
+struct Scaling {
+  Eigen::RowVectorXd mean, scale;  ///< scaled = (value - mean) scale
+
+  static Scaling Of(const Eigen::MatrixXd& values);
+  /// Leaves every value as it is.
+  static Scaling None(Eigen::Index columns);
+
+  Eigen::MatrixXd Apply(const Eigen::MatrixXd& values) const;
+};
+
+std::vector<float> ToFloats(const Eigen::MatrixXd& values);  ///< Column by column.
+
+/// Principal components of poses (pose paper, section 6): pose = mean + sum of a_k component_k over
+/// scale, entry by entry. All components are kept, greatest variance first: those of one person
+/// that are cut off are what another person's poses are missing.
+struct PoseBasis {
+  std::vector<std::string> dofs;  ///< Names of the pose's entries.
+  Eigen::VectorXd mean;           ///< m and rad.
+  Eigen::VectorXd scale;          ///< By which an entry counts; a metre is as much as 2.5 rad.
+  Eigen::MatrixXd components;     ///< Rows of length 1, at right angles.
+  Eigen::VectorXd variances;      ///< Of each component's a, divided by the number of poses.
+
+  /// Components that hold the part `fraction` of the variance.
+  int ComponentsFor(double fraction) const;
+};
+
+/// Of poses in columns: aligned motions (alignment.h) of one skeleton layout. The sign of a
+/// component is such that its greatest entry is positive.
+PoseBasis MakeBasis(const Eigen::MatrixXd& poses, std::vector<std::string> dofs);
+
+/// Appends mean, scale, components and variances, labelled with the dofs.
+void AppendTensors(const PoseBasis& basis, model::Model& model);
 
 }  // namespace footing::learning

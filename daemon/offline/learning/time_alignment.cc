@@ -6,9 +6,63 @@
 #include <sstream>
 #include <vector>
 
-#include "common/base/quantile.h"
+#include "common/base/result.h"
+#include "common/base/text.h"
+#include "common/base/units.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/motion/edit.h"
 
 namespace footing::learning {
+namespace {
+
+constexpr double kApartS = 0.25;
+
+/// How long the push around `peak` is over half of what it is there.
+double WidthS(const Eigen::VectorXd& total, Eigen::Index peak, double rate_hz) {
+  const double half = 1 + 0.5 * (total(peak) - 1);
+  Eigen::Index from = peak, to = peak;
+  while (from > 0 && total(from - 1) > half) --from;
+  while (to + 1 < total.size() && total(to + 1) > half) ++to;
+  return static_cast<double>(to - from + 1) / rate_hz;
+}
+
+/// A foot that carries nothing shortly before, and where something is measured from then on.
+bool ComesDown(const ForceTrace& trace, Eigen::Index peak) {
+  const auto before = static_cast<Eigen::Index>(kUnloadedS * trace.rate_hz);
+  bool unloaded = false;
+  for (Eigen::Index i = std::max<Eigen::Index>(0, peak - before); i <= peak; ++i) {
+    if (!trace.valid[static_cast<std::size_t>(i)]) return false;
+    unloaded = unloaded || trace.load_n.col(i).minCoeff() < kUnloadedShare * trace.weight_n;
+  }
+  return unloaded;
+}
+
+}  // namespace
+
+Eigen::VectorXd ForceTrace::Total(double cutoff_hz) const {
+  FOOTING_CHECK(weight_n > 0);
+  const Eigen::MatrixXd total = load_n.colwise().sum() / weight_n;
+  return motion::LowPass(total, rate_hz, cutoff_hz).row(0);
+}
+
+std::vector<Stomp> FindStomps(const ForceTrace& trace) {
+  std::vector<Stomp> stomps;
+  if (trace.load_n.cols() < 3) return stomps;
+  const Eigen::VectorXd total = trace.Total(kStompCutoffHz);
+  for (Eigen::Index i = 1; i + 1 < total.size(); ++i) {
+    const bool peak = total(i) > total(i - 1) && total(i) >= total(i + 1);
+    if (!peak || total(i) < 1 + kStompOver || !ComesDown(trace, i)) continue;
+    if (WidthS(total, i, trace.rate_hz) > kStompLongestS) continue;
+    const Stomp stomp{static_cast<double>(i) / trace.rate_hz, total(i) - 1};
+    if (!stomps.empty() && stomp.time_s - stomps.back().time_s < kApartS) {
+      if (stomp.over > stomps.back().over) stomps.back() = stomp;
+    } else {
+      stomps.push_back(stomp);
+    }
+  }
+  return stomps;
+}
+
 namespace {
 
 constexpr double kCutoffHz = 6;     // Both are as smooth as Follow makes a motion's.
@@ -290,6 +344,164 @@ Result<TimeAlignment> AlignInTime(const ForceTrace& recorded, const ForceTrace& 
   at.stomps_motion = static_cast<int>(of_motion.size());
   at.stomps_both = Both(stomps, of_motion, at, kMatchS);
   return at;
+}
+
+namespace {
+
+using body::Landmark;
+
+constexpr double kToeAboveFloorM = 0.015;
+constexpr double kPartBelowFloor = 0.02;
+
+void Unwrap(const body::Skeleton& skeleton, Eigen::MatrixXd& q) {
+  for (int row = 3; row < skeleton.dof; ++row) {
+    for (Eigen::Index t = 1; t < q.cols(); ++t) {
+      q(row, t) = NearestTurn(q(row, t), q(row, t - 1));
+    }
+  }
+}
+
+}  // namespace
+
+double Quantile(const Eigen::VectorXd& values, double share) {
+  FOOTING_CHECK(values.size() > 0);
+  return text::Quantile(std::vector<double>(values.data(), values.data() + values.size()), share);
+}
+
+motion::Motion Aligned(const motion::Motion& motion, const body::Landmarks& landmarks) {
+  FOOTING_CHECK(motion.frames() > 0);
+  const body::Skeleton& skeleton = motion.skeleton;
+  body::Kinematics at(skeleton);
+  Eigen::Matrix2Xd left_W(2, motion.frames()), feet_W_m(2, motion.frames());
+  Eigen::VectorXd lowest_m(motion.frames());
+  const auto toe = [&](Landmark end, Landmark ankle) {
+    return landmarks[end] >= 0 ? landmarks[end] : landmarks[ankle];
+  };
+  const int left_toe = toe(Landmark::kLeftToe, Landmark::kLeftAnkle);
+  const int right_toe = toe(Landmark::kRightToe, Landmark::kRightAnkle);
+  const auto place = [&](int joint) { return at.p_WJ[static_cast<std::size_t>(joint)]; };
+  for (Eigen::Index t = 0; t < motion.frames(); ++t) {
+    ComputeKinematics(skeleton, motion.q.col(t), at);
+    left_W.col(t) =
+        (place(landmarks[Landmark::kLeftHip]) - place(landmarks[Landmark::kRightHip])).head<2>();
+    feet_W_m.col(t) = (place(landmarks[Landmark::kLeftAnkle]) + place(left_toe) +
+                       place(landmarks[Landmark::kRightAnkle]) + place(right_toe))
+                          .head<2>() /
+                      4;
+    lowest_m(t) = std::min(place(left_toe).z(), place(right_toe).z());
+  }
+  const Eigen::Vector2d left_mean_W = left_W.rowwise().mean();
+  const double yaw_rad = std::atan2(-left_mean_W.x(), left_mean_W.y());  // Of the facing.
+  const Eigen::Matrix3d R = body::AxisRotation(body::Axis::kZ, -yaw_rad);
+  const Eigen::Matrix2Xd feet_m = R.topLeftCorner<2, 2>() * feet_W_m;
+  const Eigen::Vector3d origin_m(Quantile(feet_m.row(0), 0.5), Quantile(feet_m.row(1), 0.5),
+                                 Quantile(lowest_m, kPartBelowFloor) - kToeAboveFloorM);
+
+  motion::Motion aligned = motion;
+  const body::Joint& root = skeleton.joint(0);
+  for (Eigen::Index t = 0; t < motion.frames(); ++t) {
+    const Eigen::Matrix3d R_WJ = JointRotation(root, motion.q.col(t));
+    if (t > 0) {  // The triple of angles nearest to the frame before.
+      const auto turning = static_cast<Eigen::Index>(root.rotations.size());
+      aligned.q.col(t).segment(root.first_dof, turning) =
+          aligned.q.col(t - 1).segment(root.first_dof, turning);
+    }
+    SetJointRotation(root, R * R_WJ, aligned.q.col(t));
+    aligned.q.col(t).head<3>() = R * motion.q.col(t).head<3>() - origin_m;
+  }
+  Unwrap(skeleton, aligned.q);
+  return aligned;
+}
+
+namespace {
+
+constexpr double kTPoseRateHz = 60;
+
+/// The readings around a time, and how far it is from the first to the second; nothing when they
+/// are further apart than `silence_s`.
+template <typename Reading>
+struct Around {
+  const Reading* before = nullptr;
+  const Reading* after = nullptr;
+  double share = 0;
+};
+
+template <typename Reading>
+std::optional<Around<Reading>> Find(const std::vector<Reading>& readings, double time_s,
+                                    double silence_s) {
+  const auto after =
+      std::lower_bound(readings.begin(), readings.end(), time_s,
+                       [](const Reading& reading, double at_s) { return reading.time_s < at_s; });
+  if (after == readings.end()) return std::nullopt;
+  if (after->time_s == time_s) return Around<Reading>{&*after, &*after, 0};
+  if (after == readings.begin()) return std::nullopt;
+  const auto before = after - 1;
+  const double step_s = after->time_s - before->time_s;
+  if (step_s > silence_s) return std::nullopt;
+  return Around<Reading>{&*before, &*after, (time_s - before->time_s) / step_s};
+}
+
+}  // namespace
+
+momentum::ContactLoads LoadsAt(const RecordedSession& session, double time_s) {
+  momentum::ContactLoads loads;
+  loads.time_s = time_s;
+  for (std::size_t side = 0; side < momentum::kFeet; ++side) {
+    momentum::FootLoads& foot = loads.feet[side];
+    const auto& cells_W_m = session.cells_W_m[side];
+    foot.count = cells_W_m.size();
+    for (std::size_t k = 0; k < foot.count; ++k) {
+      foot.cells[k].p_WS_m = {cells_W_m[k].x(), cells_W_m[k].y(), 0};
+    }
+    const auto around = Find(session.boards[side], time_s, kBoardSilenceS);
+    if (!around) continue;
+    foot.valid = true;
+    for (std::size_t k = 0; k < foot.count; ++k) {
+      foot.cells[k].load_n = (1 - around->share) * around->before->corners_n[k] +
+                             around->share * around->after->corners_n[k];
+    }
+  }
+  return loads;
+}
+
+std::optional<HandReading> HandAt(const RecordedSession& session, std::size_t side, double time_s) {
+  const auto around = Find(session.hands[side], time_s, kHandSilenceS);
+  if (!around) return std::nullopt;
+  return HandReading{
+      time_s, (1 - around->share) * around->before->p_W_m + around->share * around->after->p_W_m,
+      (1 - around->share) * around->before->sd_m + around->share * around->after->sd_m};
+}
+
+std::optional<momentum::TPose> FindTPose(const RecordedSession& session) {
+  momentum::TPoseCalibration calibration;
+  const auto frames = static_cast<std::size_t>(session.duration_s * kTPoseRateHz);
+  for (std::size_t i = 0; i < frames; ++i) {
+    const double time_s = static_cast<double>(i) / kTPoseRateHz;
+    if (calibration.Advance(LoadsAt(session, time_s), 1 / kTPoseRateHz))
+      return calibration.result();
+  }
+  return std::nullopt;
+}
+
+ForceTrace TraceOf(const RecordedSession& session, double weight_n) {
+  ForceTrace trace;
+  trace.name = session.name;
+  trace.weight_n = weight_n;
+  const auto columns = static_cast<Eigen::Index>(session.duration_s * trace.rate_hz) + 1;
+  trace.load_n.setZero(2, columns);
+  trace.valid.assign(static_cast<std::size_t>(columns), false);
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    const auto loads = LoadsAt(session, static_cast<double>(i) / trace.rate_hz);
+    const bool valid = loads.feet[0].valid && loads.feet[1].valid;
+    trace.valid[static_cast<std::size_t>(i)] = valid;
+    if (i > 0) trace.load_n.col(i) = trace.load_n.col(i - 1);
+    if (!valid) continue;
+    for (std::size_t side = 0; side < momentum::kFeet; ++side) {
+      trace.load_n(static_cast<Eigen::Index>(side), i) =
+          momentum::PressureOf(loads.feet[side], 1).total_n;
+    }
+  }
+  return trace;
 }
 
 }  // namespace footing::learning

@@ -2,15 +2,177 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-#include "common/base/number.h"
+#include <Eigen/QR>
+
+#include "common/base/result.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
-#include "common/virtual/devices/impact_reaction.h"
-#include "daemon/offline/pose_run/plates_com.h"
-#include "daemon/offline/pose_run/stage.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/devices/board_cells.h"
+#include "daemon/offline/pose_run/pose_run.h"
 
 namespace footing::pose_run {
+namespace {
+
+namespace sensors = virtual_sensors;
+using sensors::kFeet;
+
+/// The clip's frame in the scene's: columns before it, and how W of its file lies in W.
+struct Placed {
+  Eigen::Index before = 0;
+  Eigen::Matrix3d R_WV = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_WV = Eigen::Vector3d::Zero();
+
+  Placed(const motion::Motion& clip, const sensors::Scene& scene)
+      : before(scene.motion.frames() - clip.frames()) {
+    body::Kinematics in_file(clip.skeleton), in_scene(scene.motion.skeleton);
+    body::ComputeKinematics(clip.skeleton, clip.q.col(0), in_file);
+    body::ComputeKinematics(scene.motion.skeleton, scene.motion.q.col(before), in_scene);
+    R_WV = in_scene.R_WJ[0] * in_file.R_WJ[0].transpose();
+    p_WV = in_scene.p_WJ[0] - R_WV * in_file.p_WJ[0];
+  }
+};
+
+/// How far a point of the ground is from the line between the middles of heel and ball.
+double Beside(const sensors::BodyCourse& course, std::size_t foot, Eigen::Index column,
+              const Eigen::Vector2d& p) {
+  const auto& sole = course.sole_m[foot];
+  const Eigen::Vector3d heel = 0.5 * (sole[0].col(column) + sole[1].col(column));
+  const Eigen::Vector3d ball = 0.5 * (sole[2].col(column) + sole[3].col(column));
+  const Eigen::Vector3d along = ball - heel, at(p.x(), p.y(), 0);
+  const double share =
+      std::clamp((at - heel).dot(along) / std::max(along.squaredNorm(), 1e-9), 0.0, 1.0);
+  return (at - heel - share * along).norm();
+}
+
+/// Calls `use` with a sample, the next one and the share of the next, at points spread evenly over
+/// `span_s` around a time; returns their number.
+template <typename Use>
+int Sample(double time_s, double span_s, double rate_hz, Eigen::Index count, const Use& use) {
+  const int points = std::max(1, static_cast<int>(std::ceil(span_s * rate_hz)));
+  for (int i = 0; i < points; ++i) {
+    const double off_s = span_s * ((i + 0.5) / points - 0.5);
+    const double at = std::clamp((time_s + off_s) * rate_hz, 0.0, static_cast<double>(count - 1));
+    const auto low = static_cast<Eigen::Index>(at);
+    use(low, std::min(low + 1, count - 1), at - static_cast<double>(low));
+  }
+  return points;
+}
+
+/// One plate's part, added to what the feet feel.
+class PlateFeeler {
+ public:
+  PlateFeeler(const motion::Motion& clip, const sensors::Scene& scene,
+              const motion::GroundForces& forces)
+      : clip_(clip), scene_(scene), forces_(forces), placed_(clip, scene) {}
+
+  PlateUse Add(const motion::PlateForces& plate, Eigen::Index first, FeltForces& felt) const {
+    PlateUse use;
+    use.plate = plate.name;
+    double load_sum = 0, beside_sum = 0;
+    const Eigen::Index count = felt.load_n[0].size();
+    for (Eigen::Index begin = 0; begin < count;) {
+      if (!(plate.force_W(2, first + begin) > kLoadedN)) {
+        ++begin;
+        continue;
+      }
+      Eigen::Index end = begin;
+      std::array<double, kFeet> beside{};
+      double load = 0;
+      for (; end < count && plate.force_W(2, first + end) > kLoadedN; ++end) {
+        const double force_n = plate.force_W(2, first + end);
+        load += force_n;
+        for (std::size_t f = 0; f < kFeet; ++f) {
+          beside[f] += force_n * Beside(scene_.course, f, Column(end), CopOf(plate, first + end));
+        }
+      }
+      const std::size_t foot = beside[1] < beside[0] ? 1 : 0;
+      for (Eigen::Index i = begin; i < end; ++i) {
+        const double force_n = plate.force_W(2, first + i);
+        felt.load_n[foot](i) += force_n;
+        felt.moment_nm[foot].col(i) += force_n * CopOf(plate, first + i);
+        felt.shear_n.col(i) += (placed_.R_WV * plate.force_W.col(first + i)).head<2>();
+      }
+      use.loaded_s[foot] += static_cast<double>(end - begin) / forces_.rate_hz;
+      load_sum += load;
+      beside_sum += beside[foot];
+      begin = end;
+    }
+    use.beside_m = load_sum > 0 ? beside_sum / load_sum : 0;
+    return use;
+  }
+
+ private:
+  Eigen::Vector2d CopOf(const motion::PlateForces& plate, Eigen::Index sample) const {
+    return (placed_.R_WV * plate.cop_W.col(sample) + placed_.p_WV).head<2>();
+  }
+  Eigen::Index Column(Eigen::Index sample) const {
+    const double time_s = static_cast<double>(sample) / forces_.rate_hz;
+    return std::min(placed_.before + static_cast<Eigen::Index>(std::lround(time_s * clip_.rate_hz)),
+                    scene_.motion.frames() - 1);
+  }
+
+  const motion::Motion& clip_;
+  const sensors::Scene& scene_;
+  const motion::GroundForces& forces_;
+  Placed placed_;
+};
+
+}  // namespace
+
+sensors::FootForce FeltForces::Mean(std::size_t foot, double time_s, double span_s) const {
+  const Eigen::VectorXd& loads = load_n[foot];
+  sensors::FootForce force;
+  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+  const int points = Sample(
+      time_s, span_s, rate_hz, loads.size(), [&](Eigen::Index low, Eigen::Index high, double part) {
+        force.load_n += (1 - part) * loads(low) + part * loads(high);
+        moment += (1 - part) * moment_nm[foot].col(low) + part * moment_nm[foot].col(high);
+      });
+  force.load_n /= points;
+  if (force.load_n > 0) {
+    force.cop_m = moment / points / force.load_n;
+  } else {
+    force.cop_m.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return force;
+}
+
+Eigen::Vector2d FeltForces::MeanShear(double time_s, double span_s) const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  const int points = Sample(time_s, span_s, rate_hz, shear_n.cols(),
+                            [&](Eigen::Index low, Eigen::Index high, double part) {
+                              sum += (1 - part) * shear_n.col(low) + part * shear_n.col(high);
+                            });
+  return sum / points;
+}
+
+FeltForces FeelPlates(const motion::Motion& clip, const sensors::Scene& scene,
+                      const motion::GroundForces& forces) {
+  FeltForces felt;
+  felt.rate_hz = forces.rate_hz;
+  const Eigen::Index all = forces.plates.front().force_W.cols();
+  const auto first = std::clamp<Eigen::Index>(
+      static_cast<Eigen::Index>(std::lround((clip.start_s - forces.start_s) * forces.rate_hz)), 0,
+      all - 1);
+  const double span_s = static_cast<double>(clip.frames() - 1) / clip.rate_hz;
+  const Eigen::Index count =
+      std::min(static_cast<Eigen::Index>(std::lround(span_s * forces.rate_hz)) + 1, all - first);
+  for (std::size_t f = 0; f < kFeet; ++f) {
+    felt.load_n[f] = Eigen::VectorXd::Zero(count);
+    felt.moment_nm[f] = Eigen::Matrix2Xd::Zero(2, count);
+  }
+  felt.shear_n = Eigen::Matrix2Xd::Zero(2, count);
+  const PlateFeeler feeler(clip, scene, forces);
+  for (const motion::PlateForces& plate : forces.plates) {
+    felt.plates.push_back(feeler.Add(plate, first, felt));
+  }
+  return felt;
+}
+
 namespace {
 
 namespace sensors = virtual_sensors;
@@ -295,6 +457,116 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
   Compare(part, *scene, felt, out.report);
   AddWarnings(settings.mass_kg, out.report);
   return out;
+}
+
+namespace {
+
+constexpr double kLeastS = 5;
+constexpr double kMostMps = 0.3;  // Of a COM at rest.
+
+}  // namespace
+
+Eigen::Matrix3Xd ComByPlates(const PoseRun& run, const FeltForces& felt, double begin_s) {
+  const std::size_t first = run.judged_from;
+  const auto frames = static_cast<Eigen::Index>(run.frames.size() - first);
+  const auto speed_mps = [&](std::size_t i) {
+    return (run.frames[i + 1].com_m - run.frames[i].com_m).norm() * run.rate_hz;
+  };
+  if (static_cast<double>(frames) < kLeastS * run.rate_hz || speed_mps(first) > kMostMps ||
+      speed_mps(run.frames.size() - 2) > kMostMps) {
+    return {};
+  }
+  ForceCourse course{run.rate_hz, Eigen::Matrix3Xd::Zero(3, frames),
+                     Eigen::Matrix2Xd::Zero(2, frames)};
+  Eigen::VectorXd height_m(frames);
+  for (Eigen::Index i = 0; i < frames; ++i) {
+    const std::size_t frame = first + static_cast<std::size_t>(i);
+    const double clip_s = static_cast<double>(frame) / run.rate_hz - begin_s;
+    Eigen::Vector2d moment_nm = Eigen::Vector2d::Zero();
+    double load_n = 0;
+    for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+      const virtual_sensors::FootForce foot = felt.Mean(f, clip_s, 1 / run.rate_hz);
+      if (!foot.cop_m.allFinite()) continue;
+      load_n += foot.load_n;
+      moment_nm += foot.load_n * foot.cop_m;
+    }
+    course.force_n.col(i) << felt.MeanShear(clip_s, 1 / run.rate_hz), load_n;
+    if (load_n > 0) course.cop_m.col(i) = moment_nm / load_n;
+    height_m(i) = run.frames[frame].com_m.z();
+  }
+  return ComByForce(course, height_m);
+}
+
+namespace {
+
+/// From 0 on, by trapezoids.
+Eigen::VectorXd Integrated(const Eigen::VectorXd& rate, double step_s) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(rate.size());
+  for (Eigen::Index i = 1; i < rate.size(); ++i) {
+    sum(i) = sum(i - 1) + 0.5 * step_s * (rate(i - 1) + rate(i));
+  }
+  return sum;
+}
+
+Eigen::VectorXd IntegratedTwice(const Eigen::VectorXd& rate, double step_s) {
+  return Integrated(Integrated(rate, step_s), step_s);
+}
+
+Eigen::VectorXd Times(Eigen::Index frames, double step_s) {
+  return Eigen::VectorXd::LinSpaced(frames, 0, step_s * static_cast<double>(frames - 1));
+}
+
+struct Vertical {
+  double mass_kg = 0;
+  Eigen::VectorXd height_m;
+};
+
+Vertical VerticalPath(const ForceCourse& course, const Eigen::VectorXd& height_m) {
+  const Eigen::Index frames = height_m.size();
+  const double step_s = 1 / course.rate_hz;
+  const Eigen::VectorXd t_s = Times(frames, step_s);
+  const Eigen::VectorXd fall_m = -0.5 * kStandardGravityMps2 * t_s.cwiseAbs2();
+  Eigen::MatrixX3d terms(frames, 3);  // Of the height, the velocity, and the mass inverted.
+  terms << Eigen::VectorXd::Ones(frames), t_s, IntegratedTwice(course.force_n.row(2), step_s);
+  const Eigen::Vector3d constants = terms.colPivHouseholderQr().solve(height_m - fall_m);
+  return {1 / constants(2), terms * constants + fall_m};
+}
+
+/// Along one axis of the ground. `lever_s2`: z / (g + z'').
+Eigen::VectorXd LevelPath(const Eigen::VectorXd& acceleration_mps2, const Eigen::VectorXd& cop_m,
+                          const Eigen::VectorXd& lever_s2, const Eigen::VectorXd& load_n,
+                          double step_s) {
+  const Eigen::Index frames = cop_m.size();
+  const Eigen::VectorXd t_s = Times(frames, step_s);
+  Eigen::MatrixX3d terms(frames, 3);  // Of the place, the velocity and a constant acceleration.
+  terms << Eigen::VectorXd::Ones(frames), t_s, 0.5 * t_s.cwiseAbs2();
+  const Eigen::VectorXd moved_m = IntegratedTwice(acceleration_mps2, step_s);
+  Eigen::MatrixX3d of_cop = terms;
+  of_cop.col(2) -= lever_s2;
+  const Eigen::VectorXd rest_m = cop_m - moved_m + lever_s2.cwiseProduct(acceleration_mps2);
+  const Eigen::Vector3d constants =
+      (load_n.asDiagonal() * of_cop).colPivHouseholderQr().solve(load_n.asDiagonal() * rest_m);
+  return moved_m + terms * constants;
+}
+
+}  // namespace
+
+Eigen::Matrix3Xd ComByForce(const ForceCourse& course, const Eigen::VectorXd& height_m) {
+  const Eigen::Index frames = course.force_n.cols();
+  FOOTING_CHECK(course.rate_hz > 0 && course.cop_m.cols() == frames && height_m.size() == frames);
+  const Vertical up = VerticalPath(course, height_m);
+  const Eigen::VectorXd load_n = course.force_n.row(2).cwiseMax(0);
+  // z / (g + z'') is z m / F. In the air the load weighs the row with 0.
+  const Eigen::VectorXd lever_s2 = load_n.binaryExpr(
+      up.height_m,
+      [&up](double load, double height) { return load > 0 ? height * up.mass_kg / load : 0; });
+  Eigen::Matrix3Xd com_m(3, frames);
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    com_m.row(axis) = LevelPath(course.force_n.row(axis) / up.mass_kg, course.cop_m.row(axis),
+                                lever_s2, load_n, 1 / course.rate_hz);
+  }
+  com_m.row(2) = up.height_m;
+  return com_m;
 }
 
 }  // namespace footing::pose_run

@@ -1,22 +1,30 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "common/base/result.h"
+#include "common/base/units.h"
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/base/result.h"
-#include "common/virtual/motion/motion.h"
-#include "common/virtual/devices/random.h"
 #include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/held_device.h"
+#include "common/virtual/devices/noise.h"
 #include "common/virtual/devices/scene.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/motion/table.h"
 #include "daemon/offline/pose_run/extra_sensors.h"
-#include "daemon/offline/pose_run/kinect_body.h"
+#include "daemon/simulation/pose/arm_model.h"
 #include "daemon/simulation/pose/arm_tracker.h"
+#include "daemon/simulation/reconstruction/insole_walk.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 /// What a recorded motion would have given two boards and two hand trackers, frame by frame, beside
@@ -129,5 +137,127 @@ PoseRun RunScene(const virtual_sensors::Scene& scene, const Settings& settings,
 /// in errors.
 Result<PoseRun> RunPose(const motion::Motion& clip, const Settings& settings,
                         const std::string& origin);
+
+/// The clip with its landmarks only, behind a T-pose of kStandS. `origin` names it in errors.
+Result<virtual_sensors::Scene> Stage(const motion::Motion& clip, const Settings& settings,
+                                     const std::string& origin);
+
+/// How many frames of settings.rate_hz the scene has, and the motion's column at each.
+std::size_t FrameCount(const virtual_sensors::Scene& scene, double rate_hz);
+Eigen::Index ColumnAt(const virtual_sensors::Scene& scene, double time_s);
+
+/// Less is not a crouch.
+inline constexpr double kCrouchRad = 45 * kPi / 180;
+
+/// A frame, and how far every knee and every hip is bent in it at least: from a straight leg, from
+/// a thigh in line with the trunk. A bow leaves the knees straight, a raised knee the other leg.
+struct Crouch {
+  std::size_t frame = 0;
+  double bend_rad = 0;
+};
+
+/// Of the true poses, from that frame on, where it bends most with both feet on the ground. Frame
+/// `from` where it never bends or stands.
+Crouch DeepestCrouch(const PoseRun& run, std::size_t from);
+
+struct InsoleFrame {
+  reconstruction::InsoleInputs inputs;
+  Eigen::VectorXd q;
+  std::array<double, momentum::kFeet> load_n{};
+};
+
+/// What a recorded motion would have given two insoles and two hand trackers, beside the truth.
+struct InsoleRun {
+  body::Body body;
+  double rate_hz = 60;
+  std::vector<InsoleFrame> frames;  ///< Begins with kStandS in the T-pose.
+};
+
+/// As RunPose; of the settings' errors, the white noise of a cell counts.
+Result<InsoleRun> RunInsoles(const motion::Motion& clip, const Settings& settings,
+                             const std::string& origin);
+
+/// Plates against markers, by somebody who stands still on them.
+/// How far the body's centre of mass is from over the plates' centre of pressure, in the mean of a
+/// trial in which a person stands still, where one must be over the other: along x and y of the
+/// files' W, m. What plates, markers and the masses of segments are wrong by together. InvalidData
+/// when motion and forces have less than a second in common, the person moves or is half supported
+/// by something else, or both are further apart than any such error.
+Result<Eigen::Vector2d> StandingOffset(const motion::Motion& still,
+                                       const motion::GroundForces& forces, const Settings& settings,
+                                       const std::string& origin, const std::string& forces_origin);
+
+/// Which devices there are on each arm, by arms::Place.
+using Places = std::array<bool, arms::kPlaces>;
+inline constexpr Places kFists{true, false, false}, kStrapped{false, true, true};
+
+/// Wiimotes with MotionPlus on both arms of a scene: a sample for every column of its motion.
+class HeldHands {
+ public:
+  HeldHands(const virtual_sensors::Scene& scene, const Places& places, const Settings& settings);
+
+  /// The samples from the last call's column up to this one.
+  ArmReadings Until(Eigen::Index column);
+  double step_s() const { return step_s_; }
+
+ private:
+  struct Device {
+    std::size_t arm, place;
+    virtual_sensors::HeldCourse course;
+    virtual_sensors::HeldErrors errors;
+  };
+  std::vector<Device> devices_;
+  Eigen::Index next_ = 0;
+  double step_s_;
+};
+
+/// A frame's readings to their devices.
+void Feed(const ArmReadings& readings, double reading_s, arms::ArmTracker& tracker);
+
+/// Puts how the arms are held into the inputs, by the readings of the run's devices. Straps need no
+/// model.
+void EstimateArms(const std::optional<arms::ArmModel>& model, PoseRun& run);
+
+/// What a recorded motion would have given such devices alone, beside the truth.
+struct ArmFrame {
+  ArmReadings readings;
+  Eigen::VectorXd q;
+};
+struct ArmRun {
+  body::Body body;
+  double rate_hz = 60;           ///< Of the frames,
+  double reading_s = 0;          ///< and the time from one reading to the next.
+  std::size_t aligned = 0;       ///< The frame at whose end the T-pose is known.
+  std::vector<ArmFrame> frames;  ///< Begins with kStandS in the T-pose.
+};
+
+/// As RunPose; of the settings the person, rate, loop, seed and perfect_devices count.
+Result<ArmRun> RunArms(const motion::Motion& clip, const Settings& settings,
+                       const std::string& origin, const Places& places = kFists);
+
+/// What the person does, frame by frame: scores of a clip that mostly stands say little of squats.
+/// [begin_s, end_s) on the motion's clock.
+struct ActivitySpan {
+  double begin_s = 0, end_s = 0;
+  std::string activity;
+};
+
+/// A table with the head "begin_s,end_s,activity". Spans do not overlap, names have up to 60 bytes.
+/// Errors say the line and what was expected.
+Result<std::vector<ActivitySpan>> ParseActivities(std::string_view text, const std::string& file);
+
+/// The label of each frame by such a table; frames outside of it have none.
+Activities LabelledActivities(const PoseRun& run, const std::vector<ActivitySpan>& spans);
+
+/// By plain rules on the truth, the first that fits:
+/// airborne: no foot carries more than 20 N;
+/// one_foot: one does;
+/// bent: the line from the hips' middle to the neck is more than 35 degrees from the vertical;
+/// crouched: the COM is under 90 % of its height in the T-pose;
+/// arms: a wrist moves faster than 0.5 m/s against the chest (the neck where there is none);
+/// moving: the COM moves faster than 0.1 m/s;
+/// still: what is left, upright on both feet.
+/// Speeds are differences over 0.1 s around the frame. The first frame stands in the T-pose.
+Activities RuledActivities(const PoseRun& run);
 
 }  // namespace footing::pose_run

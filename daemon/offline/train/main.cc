@@ -4,7 +4,7 @@
 #include "common/cli/cli.h"
 #include "common/runtime/log.h"
 #include "daemon/offline/compute/ranks.h"
-#include "daemon/offline/train/command.h"
+#include "daemon/offline/train/pose_training.h"
 
 namespace {
 

@@ -1,14 +1,16 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
+#include "common/base/result.h"
 #include "common/body/body.h"
 #include "common/model/model.h"
-#include "common/base/result.h"
 #include "common/virtual/motion/motion.h"
+#include "daemon/offline/learning/pose_regression.h"
 
 namespace footing::train {
 
@@ -54,5 +56,17 @@ Result<Clips> ReadClips(const MotionOptions& options);
 
 /// The data files of a model: those of the training.
 std::vector<model::DataFile> DataFiles(const std::vector<Clip>& clips);
+
+struct TrainedBasis {
+  learning::PoseBasis basis;
+  Eigen::Index poses = 0;
+};
+
+/// Of the clips and their mirror images, on the ground, all persons as if their roots were 1 m high
+/// in the T-pose. All clips must have one layout: the error names the first that has not.
+Result<TrainedBasis> TrainBasis(const std::vector<Clip>& clips);
+
+/// The basis' tensors and the height of its people.
+void AppendBasis(const learning::PoseBasis& basis, model::Model& model);
 
 }  // namespace footing::train

@@ -1,13 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "common/model/model.h"
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+
 #include "common/base/result.h"
+#include "common/model/model.h"
 #include "daemon/offline/learning/own_take.h"
+#include "daemon/offline/learning/time_alignment.h"
 #include "daemon/offline/train/motions.h"
 
 namespace footing::train {
@@ -51,5 +53,16 @@ Result<TrainingSet> ReadTrainingSet(const MotionOptions& motions, const OwnOptio
 
 /// {"own": {...}} into the report of a command; nothing where there is none of it.
 void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report);
+
+struct Recording {
+  learning::RecordedSession session;
+  model::DataFile file;
+  bool has_layout = false;  ///< Else the boards are taken to lie as board::DefaultLayout.
+};
+
+/// The boards and hands of one rig in a recording of footingd, on the devices' own clock. `rig`
+/// empty: the only one with two boards. InvalidData: no such boards, two people's, a board without
+/// its calibration. A recording that was cut is read as far as it goes.
+Result<Recording> ReadRecording(const std::string& path, const std::string& rig);
 
 }  // namespace footing::train

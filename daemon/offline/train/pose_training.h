@@ -1,18 +1,68 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/base/result.h"
 #include "common/model/model.h"
+#include "daemon/offline/compute/ranks.h"
+#include "daemon/offline/learning/mlp.h"
 #include "daemon/offline/learning/pose_regression.h"
 #include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/offline/train/motions.h"
 #include "daemon/simulation/reconstruction/models.h"
 
-/// How poses are learned from clips: simulated sensors, the reconstruction's own estimators, and a
-/// regression on what these say.
 namespace footing::train {
 
+/// What all subcommands share.
+struct Shared {
+  bool json = false;
+  std::string command_line;  ///< For the model's provenance.
+  int exit_code = 0;         ///< Set by the subcommand that ran.
+  ranks::Ranks ranks;        ///< Of which this process is one; `people` alone shares its work.
+};
+
+/// Each adds one subcommand to footing-train; its callback does the work and sets
+/// `shared.exit_code`.
+void AddArmCommand(CLI::App& app, Shared& shared);
+void AddBasisCommand(CLI::App& app, Shared& shared);
+void AddCascadeCommand(CLI::App& app, Shared& shared);
+void AddComCommand(CLI::App& app, Shared& shared);
+void AddMlpCommand(CLI::App& app, Shared& shared);
+void AddPeopleCommand(CLI::App& app, Shared& shared);
+void AddPoseCommand(CLI::App& app, Shared& shared);
+
+/// What every subcommand that writes a model takes.
+struct ModelOptions {
+  std::string out;
+  bool force = false;
+  std::uint64_t seed = 1;
+  std::vector<std::string> licences;  ///< Kept by the command line, in the provenance.
+};
+
+void AddModelOptions(CLI::App& command, ModelOptions& options);
+
+/// Refuses an `out` that exists, before anything is trained.
+Result<void> CheckFree(const ModelOptions& options);
+
+/// A model without tensors, with all that is known of where it comes from.
+model::Model NewModel(const std::string& kind, const Shared& shared, const ModelOptions& options,
+                      std::vector<model::DataFile> data, std::vector<std::string> subjects);
+
+Result<void> WriteModel(const model::Model& model, const ModelOptions& options);
+
+/// Writes the model, then the report of it to standard output; the program's exit code.
+int Deliver(const model::Model& model, const ModelOptions& options,
+            const nlohmann::ordered_json& report, const Shared& shared);
+
+/// How poses are learned from clips: simulated sensors, the reconstruction's own estimators, and a
+/// regression on what these say.
 inline constexpr double kPosePieceS = 10;        ///< Frames of one piece are left out together.
 inline constexpr std::size_t kFewestPeople = 3;  ///< Whose errors show those of the next person.
 inline constexpr double kSettledS = 1.5;         ///< After the T-pose.
@@ -48,5 +98,37 @@ Result<void> AddExamples(const PoseTake& take, const reconstruction::Models& mod
 learning::FittedPoseRegression AppendPoses(const learning::PoseExamples& examples,
                                            learning::PoseCues cues, const Eigen::VectorXd& scale,
                                            std::uint64_t seed, model::Model& model);
+
+/// What the subcommands that train on a table share on the command line.
+struct DataOptions {
+  std::string data;
+  int inputs = 0;
+  double validation = 0.2;
+  std::vector<std::string> feedback;  ///< Names of columns, comma between; a group an option.
+  double noise_sd = 0;
+  int copies = 1;
+  std::vector<std::string> subjects;
+  ModelOptions model;
+};
+
+void AddDataOptions(CLI::App& command, DataOptions& options);
+
+struct TrainingData {
+  learning::Split split;
+  model::DataFile file;
+};
+
+/// Reads, checks and splits the table and puts noise on what is fed back, in validation too.
+/// Refuses an existing model before anything is trained.
+Result<TrainingData> Load(const DataOptions& options);
+
+struct Table {
+  std::vector<std::string> columns;
+  Eigen::MatrixXd values;  ///< A row each.
+};
+
+/// A CSV text: a line of column names, then numbers within +-1e9 in every cell. Lines that are
+/// empty or begin with # are left out. Every error names `origin`, line and what is wrong.
+Result<Table> ParseTable(std::string_view text, const std::string& origin);
 
 }  // namespace footing::train

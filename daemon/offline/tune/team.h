@@ -1,14 +1,103 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "common/base/result.h"
 #include "daemon/offline/compute/ranks.h"
-#include "daemon/offline/tune/objective.h"
-#include "daemon/offline/tune/search.h"
-#include "daemon/offline/tune/search_space.h"
+#include "daemon/offline/tune/trial.h"
+#include "daemon/simulation/gait/gain_table.h"
 
 namespace footing::tune {
+
+/// The terms of the paper's objective (section 5, Optimization), each at least 0, lower is better.
+/// The paper names what it evaluates and gives no weights; these are ours. A trial that turns has
+/// no change of gait, so heading and latency never come together.
+struct Cost {
+  double failure = 0;  ///< Of a fall: 10 + 10 (1 - fraction survived), more than all else can be.
+  double speed = 0;    ///< (speed error / 0.15 m/s)^2, at most 2.
+  double flight = 0;   ///< Flight or swing: 0.25 (relative deviation / 10 %)^2, at most 1.
+  double stance = 0;   ///< As flight.
+  double stride = 0;   ///< As flight; left out below 0.3 m/s, where a stride has no length.
+  double heading = 0;  ///< Turning: (heading error / 5 degrees)^2, at most 2.
+  double legs = 0;  ///< Running: (what the gap lacks of 3 cm / 3 cm)^2, at most 2; 1: they touch.
+  double latency = 0;  ///< Of a change to walking: (what is more than wanted / 10 %)^2, at most 2.
+
+  double total() const {
+    return failure + speed + flight + stance + stride + heading + legs + latency;
+  }
+};
+
+/// Durations that are aimed at.
+struct Wanted {
+  double flight_s, stance_s, stride_m, latency_s;
+};
+
+/// Those of the gaits as tuned by hand, so that a better score is robustness and obedience, not
+/// another look. Step and walk: swing 0.32 s, stance 0.40 s. Run: flight 0.28 s, stance 0.20 s at
+/// 2 m/s, 0.13 s at 5. Jump: the flight of the commanded height, stance 0.18 s. From running to
+/// walking: 0.6 s and 0.1 s for each m/s, which their medians are from 3.5 to 6 m/s.
+Wanted WantedOf(const Task& task, double height_m);
+
+Cost CostOf(const Task& task, const TrialResult& result);
+
+/// One iteration of a search, for the plot.
+struct HistoryPoint {
+  int iteration = 0;
+  double objective = 0;  ///< At the present point, on this iteration's trials.
+  double best = 0;       ///< Of all points tried on them.
+};
+
+/// Everything a search remembers: a plain value, so that it can be kept and gone on with.
+struct SearchState {
+  int iteration = 0;
+  Eigen::VectorXd point;  ///< The answer so far; CMA-ES: the mean.
+  double step = 1;        ///< Of the line search; CMA-ES: sigma.
+  // CMA-ES alone:
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd covariance_path, step_path;
+  std::vector<HistoryPoint> history;
+};
+
+/// Mean objective of each point. All points of one call meet the same trials (common random
+/// numbers); another `batch` means other trials.
+using Evaluate = std::function<std::vector<double>(const std::vector<Eigen::VectorXd>& points,
+                                                   std::uint64_t batch)>;
+
+/// A search of so many dimensions about 0, with its first `step`.
+SearchState StartSearch(int dimensions, double step = 1);
+
+/// One step of steepest descent: the gradient by finite differences of half a unit, then the best
+/// of four lengths along it. Nothing better there: stays, and halves the step.
+void Descend(SearchState& state, const Evaluate& evaluate);
+/// Points one Descend evaluates.
+int DescentPoints(int dimensions);
+
+/// One generation of CMA-ES (Hansen, "The CMA Evolution Strategy: A Tutorial", 2016, with its
+/// default constants); drawn from `seed` and the iteration.
+void Evolve(SearchState& state, const Evaluate& evaluate, std::uint64_t seed);
+/// Points one Evolve evaluates: 4 + 3 ln n, and the mean.
+int EvolutionPoints(int dimensions);
+
+/// One gain that is searched over; a step of 1 in the search is `scale`: of the logarithm when
+/// `relative`, else in the gain's own unit.
+struct Dimension {
+  const gait::GainField* gain;
+  double scale;
+  bool relative;
+};
+
+/// What the paper tunes: the servos' spring and damper coefficients, the constants of equations
+/// (1) and (2), and the landing length.
+std::vector<Dimension> DimensionsOf(stream::Gait gait);
+
+/// The gains at a point, 0 being `start`; kept within what a table may say.
+gait::Gains GainsAt(const gait::Gains& start, const std::vector<Dimension>& dimensions,
+                    const Eigen::VectorXd& point);
 
 /// Means with the half width of their 95 % confidence interval.
 struct Score {
@@ -75,5 +164,26 @@ struct Difference {
   double half_width = 0;
 };
 Difference Compare(const std::vector<Cost>& now, const std::vector<Cost>& before);
+
+/// What decides a run: a kept one is gone on with only when all of it is the same.
+struct RunKey {
+  std::string gait;
+  std::vector<double> speeds_mps;
+  std::uint64_t seed = 1;
+  std::string method;
+  int trials = 0;
+  double step = 1;
+  std::string from;  ///< All gains it starts from, as text.
+
+  bool operator==(const RunKey&) const = default;
+};
+
+/// As JSON text, to the last bit of every number.
+std::string KeepRun(const RunKey& key, const std::vector<SearchState>& searches);
+
+/// The searches of a kept run. Invalid data when the text is damaged or of another run; `path` is
+/// named.
+Result<std::vector<SearchState>> ResumeRun(const std::string& text, const RunKey& key,
+                                           const std::string& path);
 
 }  // namespace footing::tune

@@ -3,7 +3,12 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "common/base/result.h"
 #include "daemon/offline/compute/ranks.h"
+#include "daemon/offline/tune/team.h"
+#include "daemon/simulation/engine/engine.h"
 
 namespace footing::tune {
 
@@ -25,5 +30,31 @@ struct Options {
 
 /// Tunes, as one of these ranks; returns the exit code.
 int Run(const Options& options, const ranks::Ranks& ranks);
+
+/// The table of these texts, with the files of `paths` read after them.
+Result<gait::GainTable> TableOf(const engine::EngineTexts& texts,
+                                const std::vector<std::string>& paths);
+
+/// Writes beside `path` and renames, so that what is there is always whole.
+Result<void> ReplaceFile(const std::string& path, const std::string& text);
+
+/// One set at the end: evaluated on trials that no iteration saw.
+struct TunedSet {
+  gait::GainSet set;  ///< The answer's gains when it is better, else the start's.
+  Score before, after;
+  Difference difference;  ///< Of the answer's objective from the start's; below 0 is better.
+  bool better = false;    ///< No more falls, and lower with its whole 95 % interval.
+};
+
+/// The gait table, with seed, command line and scores in its comment; only columns that differ
+/// from gains.h. `kept` are sets besides the tuned ones.
+std::string TableText(const Options& options, const std::vector<gait::GainSet>& kept,
+                      const std::vector<TunedSet>& tuned);
+
+/// The objective over the iterations, as SVG.
+std::string Plot(const Options& options, const std::vector<SearchState>& searches);
+
+nlohmann::ordered_json ReportOf(const Options& options, const std::vector<Dimension>& dimensions,
+                                const std::vector<TunedSet>& tuned);
 
 }  // namespace footing::tune

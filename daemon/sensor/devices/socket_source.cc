@@ -1,26 +1,60 @@
 #include "daemon/sensor/devices/socket_source.h"
 
-#include <google/protobuf/unknown_field_set.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <map>
 #include <string_view>
 #include <utility>
 
-#include "common/runtime/clock.h"
-#include "common/runtime/timer.h"
-#include "common/net/framed_connection.h"
+#include <google/protobuf/unknown_field_set.h>
+#include <unistd.h>
+
+#include "common/base/units.h"
+#include "common/net/framing.h"
 #include "common/net/listener.h"
 #include "common/net/turn_queue.h"
-#include "common/base/units.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timer.h"
 #include "common/wire/wire.h"
-#include "daemon/sensor/devices/attachment.h"
-#include "daemon/sensor/devices/device_connection.h"
-#include "daemon/sensor/devices/device_messages.h"
+#include "daemon/sensor/devices/source.h"
 #include "footing/v1/device.pb.h"
 
 namespace footing::devices {
+namespace {
+
+constexpr std::int64_t kAdminPlaces = 8;
+/// 16 devices of 200 reports a second take two thirds.
+constexpr transport::InputBudget kBudget = {5000, 5000, 1 << 20, 1 << 20};
+
+}  // namespace
+
+transport::FramedLimits LimitsOfOne() {
+  transport::FramedLimits limits;
+  limits.max_in_bytes = kMaxEnvelopeBytes;
+  limits.max_out_bytes = kMaxEnvelopeBytes;
+  limits.max_queued_bytes = 64 * kMaxEnvelopeBytes;
+  limits.input = kBudget;
+  return limits;
+}
+
+void ConnectionCounts::Add(const transport::Peer& there, const transport::Peer& comes) {
+  ++all;
+  if (there.known == comes.known && there.user == comes.user) ++of_user;
+}
+
+std::string WhyNoConnection(const ConnectionLimits& limits, const transport::Peer& peer,
+                            uid_t own_user, const ConnectionCounts& taken) {
+  const bool admin = peer.known && (peer.user == own_user || peer.user == 0);
+  const std::int64_t places = limits.max_connections + (admin ? kAdminPlaces : 0);
+  if (taken.all >= places) {
+    return "the device socket has " + std::to_string(taken.all) +
+           " connections already (max_device_connections); end one, or attach more devices over it";
+  }
+  if (admin || taken.of_user < limits.max_connections_per_user) return "";
+  return "the device socket has " + std::to_string(taken.of_user) + " connections " +
+         (peer.known ? "of this user" : "over TCP") +
+         " already (max_device_connections_per_user); end one, or attach more devices over it";
+}
+
 namespace {
 
 constexpr double kAttachCost = 100;      // In messages: it rebuilds a rig, and reads a calibration.
@@ -296,5 +330,31 @@ void SocketSource::Refuse(DeviceHandle device, const std::string& why) {
 }
 
 void SocketSource::Stop() { implementation_->Stop(); }
+
+std::string OutputMessage(std::uint32_t slot, const reports::OutputReport& report) {
+  v1::DeviceEnvelope envelope;
+  v1::DeviceOutput& output = *envelope.mutable_output();
+  output.set_slot(slot);
+  output.set_channel(v1::DeviceOutput::CHANNEL_INTERRUPT);
+  output.set_report(report.data(), report.size());
+  return envelope.SerializeAsString();
+}
+
+std::string FeatureRequestMessage(std::uint32_t slot, std::uint8_t id, std::size_t size) {
+  v1::DeviceEnvelope envelope;
+  v1::DeviceOutput& output = *envelope.mutable_output();
+  output.set_slot(slot);
+  output.set_channel(v1::DeviceOutput::CHANNEL_FEATURE_GET);
+  output.set_report(&id, 1);
+  output.set_size(static_cast<std::uint32_t>(size));
+  return envelope.SerializeAsString();
+}
+
+std::string RefusedMessage(std::uint32_t slot, const std::string& why) {
+  v1::DeviceEnvelope envelope;
+  envelope.mutable_refused()->set_slot(slot);
+  envelope.mutable_refused()->set_reason(why);
+  return envelope.SerializeAsString();
+}
 
 }  // namespace footing::devices

@@ -1,14 +1,48 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
+
+#include <sys/types.h>
+#include <boost/asio/io_context.hpp>
 
 #include "common/net/address.h"
-#include "daemon/sensor/devices/connection_limits.h"
+#include "common/net/framing.h"
+#include "common/net/limits.h"
 #include "daemon/sensor/devices/source.h"
+#include "daemon/sensor/reports/output_report.h"
 
 namespace footing::devices {
+
+inline constexpr std::uint32_t kMaxEnvelopeBytes = 2048;
+
+/// What one connection may send, and what may wait for it.
+transport::FramedLimits LimitsOfOne();
+
+/// How many connections the device socket has at once: settings of footingd. The server's own user
+/// and root have places of their own beyond `max_connections`.
+struct ConnectionLimits {
+  std::int64_t max_connections = 64;
+  /// Of one user; all connections over TCP count as one user's.
+  std::int64_t max_connections_per_user = 16;
+};
+
+/// The connections that there are, those being refused not counted.
+struct ConnectionCounts {
+  std::int64_t all = 0;
+  std::int64_t of_user = 0;  ///< Of the user that comes now.
+
+  void Add(const transport::Peer& there, const transport::Peer& comes);
+};
+
+/// Why one more connection of this peer is refused; empty when it is taken.
+std::string WhyNoConnection(const ConnectionLimits& limits, const transport::Peer& peer,
+                            uid_t own_user, const ConnectionCounts& taken);
 
 /// The device socket: device simulators dial it and speak DeviceEnvelopes, at most 2 KiB each, many
 /// devices a connection. A connection beyond the limits hears why. One that says something
@@ -35,6 +69,29 @@ class SocketSource : public DeviceSource {
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
+};
+
+/// What footingd says on the device socket: serialised DeviceEnvelopes.
+std::string OutputMessage(std::uint32_t slot, const reports::OutputReport& report);
+/// Asks for a feature report of `size` bytes, id included.
+std::string FeatureRequestMessage(std::uint32_t slot, std::uint8_t id, std::size_t size);
+std::string RefusedMessage(std::uint32_t slot, const std::string& why);
+
+/// A connection to the device socket, and what it has attached.
+struct Connection {
+  std::unique_ptr<transport::FramedConnection> link;
+  transport::Peer peer;
+  std::map<std::uint32_t, DeviceHandle> slots;
+  std::set<std::uint32_t> refused_slots;
+  std::int64_t heard_ns = 0;
+  bool closing = false;
+  bool is_newer = false;  ///< It has sent what this version does not know.
+};
+
+/// Where a device is attached.
+struct Place {
+  std::uint64_t connection;
+  std::uint32_t slot;
 };
 
 }  // namespace footing::devices

@@ -2,8 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
+#include <vector>
+
+#include <hidapi/hidapi.h>
 
 #include "common/base/result.h"
 #include "common/stream/contacts.h"
@@ -11,6 +15,7 @@
 #include "common/stream/hands.h"
 #include "common/stream/product_ids.h"
 #include "daemon/sensor/reports/output_report.h"
+#include "footing/v1/device.pb.h"
 
 /// Where devices come from. Above this line nothing knows whether a device is real.
 namespace footing::devices {
@@ -82,5 +87,83 @@ class DeviceSource {
   /// Detaches everything without calling the handlers. May be called twice.
   virtual void Stop() = 0;
 };
+
+}  // namespace footing::devices
+
+struct udev;
+struct udev_monitor;
+
+namespace footing::devices {
+
+struct UdevRelease {
+  void operator()(udev* context) const;
+  void operator()(udev_monitor* monitor) const;
+};
+
+/// A hidraw node as the kernel describes it.
+struct HidNode {
+  std::string path;  ///< "/dev/hidraw3"
+  Bus bus = Bus::kUnknown;
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+  std::string name;    ///< Both may be empty for a moment after it appeared.
+  std::string serial;  ///< Over Bluetooth the device's address.
+  std::string driver;  ///< The kernel's, e.g. "wiimote"; empty when unknown.
+};
+
+/// What udev knows of hidraw nodes: that something changed, and which there are. Without a running
+/// udev (a sandbox, a container) nothing is ever reported, and the nodes have to be looked at from
+/// time to time.
+class NodeMonitor {
+ public:
+  NodeMonitor();
+
+  /// For poll(2); -1 when udev reports nothing here.
+  int descriptor() const;
+  /// Takes everything that was reported; true when there was something.
+  bool Clear();
+  /// Every node there is now. Not hid_enumerate: that of hidapi 0.13 crashes at a node that goes
+  /// while it looks (strdup of an absent uevent), and opens every HID device of the machine.
+  std::vector<HidNode> Nodes() const;
+
+ private:
+  std::unique_ptr<udev, UdevRelease> udev_;
+  std::unique_ptr<udev_monitor, UdevRelease> monitor_;
+};
+
+/// Closes a device and gives up its lock.
+struct HidClose {
+  int lock = -1;
+  void operator()(hid_device* device) const;
+};
+using HidHandle = std::unique_ptr<hid_device, HidClose>;
+
+/// What became of opening a node.
+struct HidOpening {
+  enum class Outcome {
+    kOpen,
+    kUnidentified,  ///< udev does not know its serial yet.
+    kDenied,        ///< EACCES: the udev rule is missing, or was not applied yet.
+    kInUse,         ///< Another footingd holds it.
+    kNobodyThere,   ///< An adapter's slot without a device.
+    kFailed,
+  };
+  Outcome outcome = Outcome::kFailed;
+  HidHandle device;
+  DeviceIdentity identity;
+  std::string reason;  ///< The kernel's words, of kFailed.
+};
+
+/// Opens the node and locks it against other instances of this program with flock(2), across users
+/// and for as long as the handle lives. Blocks up to 0.2 s on a USB adapter's slot, which has to
+/// answer first: the Mayflash DolphinBar shows four whether a Wiimote is there or not. A PS Move on
+/// USB has the serial that it has over Bluetooth.
+HidOpening OpenHid(const HidNode& node);
+
+/// What is wrong with a simulated device's attachment, or nothing.
+std::string WhatIsWrong(const v1::DeviceAttach& attach);
+
+/// The identity that the attachment states.
+DeviceIdentity IdentityOf(const v1::DeviceAttach& attach);
 
 }  // namespace footing::devices

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
+
+#include <Eigen/Core>
 
 #include "common/stream/sensor.h"
 #include "daemon/sensor/features/config.h"
@@ -69,5 +70,32 @@ class SampleGrid {
   int begin_ = 0;
   int end_ = 0;
 };
+
+/// The direction, of unit length, along which the means of the cycles of `steps` grid points spread
+/// over the newest `points`: that in which gravity moves while a wrist twists. Zero when they
+/// hardly spread, or when little of the swing is left across it.
+Eigen::Vector3d FindTwist(const SampleGrid& grid, int points, double steps,
+                          const CadenceConfig& config);
+
+/// Whether a controller moves (section 6, feature 1).
+struct Moving {
+  bool moving = false;
+  /// Grid index of the first point that belongs to the motion, or of the first still one after it.
+  std::int64_t since_index = 0;
+  /// The period that the window is cut to, 0 while none was known since then. It follows a shorter
+  /// one at once, a longer one only once that has lasted: a stop looks like a longer period at
+  /// first.
+  double period_s = 0;
+  /// Grid index since which the period has been longer; 0 while it is not.
+  std::int64_t longer_since_index = 0;
+};
+
+/// Standard deviation over the newest `count` filtered points: root of the sum of the three axes'
+/// variances, m/s². 0 for fewer than two.
+double Deviation(const SampleGrid& grid, int count);
+
+/// The state after the newest point. `period_s` is the length of a cycle, 0 while unknown.
+Moving Next(const Moving& before, const SampleGrid& grid, double period_s,
+            const MovingConfig& config);
 
 }  // namespace footing::features

@@ -2,10 +2,15 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <string>
 
-#include "common/board/plate.h"
+#include "common/base/units.h"
+#include "common/board/geometry.h"
 #include "common/stream/sensor.h"
+#include "daemon/sensor/reports/input_report.h"
+#include "daemon/sensor/reports/sequencer.h"
 
 /// What every kind of device gives: samples of one report in SI units, made with the device's own
 /// calibration. They know no time: who stamps the samples adds device, report count, times, filter
@@ -31,6 +36,45 @@ struct Decoded {
   bool changed = false;
 
   bool empty() const { return motion_count == 0 && !board && !nunchuk && !gamepad && !camera; }
+};
+
+/// Bits of stream::GamepadButton from those of reports::ClassicButton.
+std::uint32_t GamepadButtons(std::uint16_t classic_buttons);
+
+/// By the nominal ranges of the sticks (6 bits left, 5 bits right, 0 in the middle) and triggers.
+stream::GamepadSample ToGamepad(const reports::ClassicCounts& counts);
+
+/// Other than repeated and the stamps.
+bool SameReading(const stream::GamepadSample& a, const stream::GamepadSample& b);
+
+struct KindOptions {
+  double local_gravity_mps2 = kStandardGravityMps2;  ///< Where boards stand.
+  handshake::HandshakeConfig handshake;
+};
+
+/// How a device presents itself.
+struct Product {
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+  std::string name;
+};
+
+/// Where a kind of device is used, which decides the roles it can have.
+enum class Placement {
+  kOnBody,       ///< Worn or held: hands, legs, head.
+  kUnderFeet,    ///< A board.
+  kInBothHands,  ///< A gamepad: says nothing about the body.
+};
+
+/// Typical intervals of a kind, before they are estimated.
+struct Timing {
+  double report_period_s = 0.01;
+  double sensor_period_s = 0.01;
+};
+
+struct FeatureRequest {
+  std::uint8_t id = 0;
+  std::size_t size = 0;  ///< The id byte included.
 };
 
 }  // namespace footing::decode

@@ -7,9 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "daemon/sensor/kinds/decoded.h"
-#include "daemon/sensor/kinds/kind_options.h"
 #include "daemon/sensor/kinds/balance_board.h"
+#include "daemon/sensor/kinds/decoded.h"
 #include "daemon/sensor/kinds/pro_controller.h"
 #include "daemon/sensor/kinds/ps_move.h"
 #include "daemon/sensor/kinds/wiimote.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "daemon/sensor/kinds/gamepad.h"
+#include "daemon/sensor/kinds/decoded.h"
 
 namespace footing::pro_controller {
 namespace {

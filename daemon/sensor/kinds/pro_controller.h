@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "daemon/sensor/kinds/decoded.h"
-#include "daemon/sensor/kinds/kind_options.h"
-#include "daemon/sensor/reports/sequencer.h"
 #include "daemon/sensor/reports/input_report.h"
+#include "daemon/sensor/reports/sequencer.h"
 
 namespace footing::pro_controller {
 

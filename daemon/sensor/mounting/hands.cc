@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "common/stream/hands.h"
 
 namespace footing::hands {
 namespace {
@@ -182,6 +185,82 @@ stream::ReferencePose ToPose(const stream::ReferenceFrame& frame, std::int64_t r
   pose.positions_m = frame.positions_m;
   pose.com_m = frame.com_m;
   return pose;
+}
+
+namespace {
+
+constexpr double kPeriodGain = 0.1;
+/// A longer interval is a pause of the source, and no period.
+constexpr std::int64_t kLongestPeriodNs = 500'000'000;
+
+/// A time that cannot be right is of another host's clock.
+bool IsSentKnown(const FrameTimes& times) {
+  return times.sent_ns > 0 && times.sent_ns <= times.received_ns &&
+         times.received_ns - times.sent_ns <= stream::kOldestPointNs;
+}
+
+}  // namespace
+
+ExposureClock::Exposure ExposureClock::Take(const FrameTimes& times) {
+  const bool exact = IsSentKnown(times);
+  const bool together = started_ && times.received_ns == received_ns_;
+  Exposure exposure;
+  exposure.sampled_ns = (exact ? times.sent_ns : times.received_ns) - times.age_ns;
+  if (started_ && !together) {
+    const std::int64_t interval_ns = exposure.sampled_ns - sampled_ns_;
+    if (interval_ns > 0 && interval_ns < kLongestPeriodNs) {
+      const auto one_ns = static_cast<double>(interval_ns);
+      period_ns_ += (period_ns_ > 0 ? kPeriodGain : 1) * (one_ns - period_ns_);
+    }
+    published_ns_ = sampled_ns_;
+    waiting_ = 0;
+  }
+  if (together && !exact && waiting_ > 0) {
+    // They stay later than what was published before, in their order.
+    exposure.others_earlier_ns =
+        std::clamp<std::int64_t>(std::llround(period_ns_), 0, (oldest_ns_ - published_ns_) / 2);
+    oldest_ns_ -= exposure.others_earlier_ns;
+    sampled_ns_ -= exposure.others_earlier_ns;
+  }
+  if (started_) exposure.sampled_ns = std::max(exposure.sampled_ns, sampled_ns_ + 1);
+  if (!started_) published_ns_ = exposure.sampled_ns - kLongestPeriodNs;
+  if (waiting_++ == 0) oldest_ns_ = exposure.sampled_ns;
+  started_ = true;
+  received_ns_ = times.received_ns;
+  sampled_ns_ = exposure.sampled_ns;
+  return exposure;
+}
+
+void ExposureClock::Publish() {
+  published_ns_ = sampled_ns_;
+  waiting_ = 0;
+}
+
+std::optional<std::string> Refusals::Say(std::int64_t now_ns, const std::string& what, Kind& kind) {
+  if (kind.unsaid == 0 || (kind.said_ns && now_ns - *kind.said_ns < kQuietNs)) return std::nullopt;
+  const bool first = !kind.said_ns;
+  const std::uint64_t refused = std::exchange(kind.unsaid, 0);
+  kind.said_ns = now_ns;
+  std::string line = "device socket: " + what + " is refused: " + kind.why;
+  if (!first) line += " (" + std::to_string(refused) + " refused since the last such line)";
+  return line;
+}
+
+std::optional<std::string> Refusals::Add(std::int64_t now_ns, const std::string& what,
+                                         const std::string& why) {
+  ++total_;
+  Kind& kind = kinds_[what];
+  ++kind.unsaid;
+  kind.why = why;
+  return Say(now_ns, what, kind);
+}
+
+std::vector<std::string> Refusals::Due(std::int64_t now_ns) {
+  std::vector<std::string> lines;
+  for (auto& [what, kind] : kinds_) {
+    if (auto line = Say(now_ns, what, kind)) lines.push_back(std::move(*line));
+  }
+  return lines;
 }
 
 }  // namespace footing::hands

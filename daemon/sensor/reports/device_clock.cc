@@ -1,12 +1,183 @@
 #include "daemon/sensor/reports/device_clock.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "common/base/time.h"
 #include "common/base/units.h"
 
 namespace footing::link {
+namespace {
+
+/// Intervals nearer to a period than this say nothing on the phase.
+constexpr double kLongestPair = 0.9;
+/// What a repeat counts against a change: a device at rest repeats as well.
+constexpr double kRepeatWeight = 0.5;
+/// A fit is believed when it explains this share of the changes ...
+constexpr double kExplained = 0.95;
+/// ... which chance would not: standard deviations above what any phase explains.
+constexpr double kSignificance = 7;
+/// Fewer changes in the window cannot reach that: no fit is tried.
+constexpr int kLeastChanges = 48;
+
+/// Each stage of a search looks around the period found by the one before.
+struct Stage {
+  double window_share;  // 1
+  double range;         // 1
+  double step;          // 1
+};
+// The first step moves the phase by a sixth of a period over its window (100 Hz), the last by
+// 1/250.
+constexpr Stage kStages[] = {
+    {0.2, 0, 1e-3}, {0.5, 1e-3, 2.5e-4}, {1, 2.5e-4, 6e-5}, {1, 6e-5, 1.5e-5}, {1, 1.5e-5, 5e-6}};
+constexpr std::size_t kFirstFineStage = 3;
+
+double Fraction(double x) { return x - std::floor(x); }
+
+}  // namespace
+
+SampleTicks::SampleTicks(const SampleTicksConfig& config)
+    : config_(config), period_s_(config.nominal_period_s) {}
+
+void SampleTicks::Add(std::int64_t received_ns, bool changed) {
+  const std::int64_t before_ns = last_ns_;
+  last_ns_ = received_ns;
+  if (!started_) {
+    started_ = true;
+    begun_ns_ = fitted_ns_ = received_ns;
+    return;
+  }
+  if (NanosecondsToSeconds(received_ns - before_ns) > config_.coast_s) {
+    known_ = false;
+    pairs_.clear();
+    begun_ns_ = fitted_ns_ = received_ns;
+    return;
+  }
+  if (NanosecondsToSeconds(received_ns - before_ns) < kLongestPair * config_.nominal_period_s) {
+    pairs_.push_back({before_ns, received_ns, changed});
+    // A bound against a device that floods; 200 reports a second fit into it.
+    if (pairs_.size() > static_cast<std::size_t>(config_.window_s * 200)) pairs_.pop_front();
+  }
+  while (!pairs_.empty() &&
+         NanosecondsToSeconds(received_ns - pairs_.front().to_ns) > config_.window_s) {
+    pairs_.pop_front();
+  }
+  const bool full = NanosecondsToSeconds(received_ns - begun_ns_) > config_.window_s;
+  const double refit_s = known_ && full ? config_.refit_s : config_.search_s;
+  if (NanosecondsToSeconds(received_ns - fitted_ns_) < refit_s) return;
+  fitted_ns_ = received_ns;
+  Refit();
+}
+
+SampleTicks::Fit SampleTicks::At(double period_s, double window_s) const {
+  std::array<double, kBins + 1> change{};
+  double full = 0;
+  Fit fit;
+  fit.period_s = period_s;
+  double expected = 0, variance = 0;
+  const auto bin = [&](std::int64_t at_ns) {
+    return static_cast<int>(Fraction(NanosecondsToSeconds(at_ns - last_ns_) / period_s) * kBins) %
+           kBins;
+  };
+  for (auto pair = pairs_.rbegin(); pair != pairs_.rend(); ++pair) {
+    if (NanosecondsToSeconds(last_ns_ - pair->from_ns) > window_s) break;
+    const double weight = pair->changed ? 1 : -kRepeatWeight;
+    // The tick is after the first arrival and not after the second.
+    const int from = bin(pair->from_ns);
+    const int to = bin(pair->to_ns);
+    change[static_cast<std::size_t>(from)] += weight;
+    change[static_cast<std::size_t>(to) + 1] -= weight;
+    if (to < from) full += weight;
+    const double share =
+        std::min(1.0, NanosecondsToSeconds(pair->to_ns - pair->from_ns) / period_s);
+    expected += weight * share;
+    variance += weight * weight * share * (1 - share);
+    fit.changes += pair->changed ? 1 : 0;
+  }
+  std::array<double, kBins> score{};
+  double sum = full;
+  for (std::size_t i = 0; i < kBins; ++i) score[i] = sum += change[i];
+  const auto best = static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
+  fit.score = score[static_cast<std::size_t>(best)];
+  // The middle of the phases that are as good as the best.
+  const auto as_good = [&](int i) {
+    return score[static_cast<std::size_t>((i + kBins) % kBins)] >= fit.score - 1e-9;
+  };
+  int low = best, high = best;
+  while (high - low < kBins && as_good(low - 1)) --low;
+  while (high - low < kBins && as_good(high + 1)) ++high;
+  fit.phase = Fraction((0.5 * (low + high) + 0.5) / kBins);
+  fit.phase_range = static_cast<double>(high - low + 1) / kBins;
+  fit.significance = variance > 0 ? (fit.score - expected) / std::sqrt(variance) : 0;
+  return fit;
+}
+
+SampleTicks::Fit SampleTicks::Search(std::size_t first_stage, double period_s) const {
+  const double known_s = std::min(config_.window_s, NanosecondsToSeconds(last_ns_ - begun_ns_));
+  Fit best = At(period_s, known_s);
+  for (std::size_t i = first_stage; i < std::size(kStages); ++i) {
+    const Stage& stage = kStages[i];
+    const double range = i == 0 ? config_.period_range : stage.range;
+    const int steps = static_cast<int>(std::lround(range / stage.step));
+    const double window_s = stage.window_share * known_s;
+    const double centre_s = best.period_s;
+    best = At(centre_s, window_s);
+    for (int k = -steps; k <= steps; ++k) {
+      const Fit fit = At(centre_s * (1 + k * stage.step), window_s);
+      if (fit.score > best.score) best = fit;
+    }
+  }
+  return best;
+}
+
+bool SampleTicks::IsGood(const Fit& fit) const {
+  if (fit.significance < kSignificance) return false;
+  int explained = 0;
+  for (const Pair& pair : pairs_) {
+    if (!pair.changed) continue;
+    const double from = NanosecondsToSeconds(pair.from_ns - last_ns_) / fit.period_s - fit.phase;
+    const double to = NanosecondsToSeconds(pair.to_ns - last_ns_) / fit.period_s - fit.phase;
+    constexpr double kSlack = 1.0 / kBins;
+    explained += std::floor(to + kSlack) > std::floor(from - kSlack) ? 1 : 0;
+  }
+  return explained >= kExplained * fit.changes;
+}
+
+void SampleTicks::Refit() {
+  Fit fit;
+  bool good = false;
+  const auto changes =
+      std::count_if(pairs_.begin(), pairs_.end(), [](const Pair& pair) { return pair.changed; });
+  if (changes < kLeastChanges) {
+    known_ = known_ && NanosecondsToSeconds(last_ns_ - proved_ns_) < config_.coast_s;
+    return;
+  }
+  if (known_) {
+    fit = Search(kFirstFineStage, period_s_);
+    good = IsGood(fit);
+  }
+  if (!good) {
+    fit = Search(0, config_.nominal_period_s);
+    good = IsGood(fit);
+  }
+  if (!good) {
+    known_ = known_ && NanosecondsToSeconds(last_ns_ - proved_ns_) < config_.coast_s;
+    return;
+  }
+  known_ = true;
+  proved_ns_ = last_ns_;
+  period_s_ = fit.period_s;
+  phase_range_ = fit.phase_range;
+  tick_ns_ = last_ns_ + RoundToNanoseconds((fit.phase - 1) * fit.period_s);
+}
+
+double SampleTicks::phase_sd_s() const { return phase_range_ * period_s_ / std::sqrt(12); }
+
+std::int64_t SampleTicks::TickBefore(std::int64_t at_ns) const {
+  const double periods = std::floor(NanosecondsToSeconds(at_ns - tick_ns_) / period_s_);
+  return std::min<std::int64_t>(at_ns, tick_ns_ + RoundToNanoseconds(periods * period_s_));
+}
+
 namespace {
 
 /// The period may differ this much from its nominal value, by a factor either way.
@@ -94,5 +265,35 @@ void DeviceClock::AdvanceLoop(std::int64_t received_ns) {
       std::clamp(period_s_ + config_.period_gain * moved_s, config_.nominal_period_s / kPeriodRange,
                  config_.nominal_period_s * kPeriodRange);
 }
+
+namespace {
+
+constexpr double kTimeConstantS = 1;
+constexpr double kGapPeriods = 5;
+
+}  // namespace
+
+void LinkStatistics::Advance(std::int64_t received_ns) {
+  ++reports_;
+  const double interval_s = NanosecondsToSeconds(received_ns - last_ns_);
+  last_ns_ = received_ns;
+  if (reports_ == 1) return;
+  if (interval_s > kGapPeriods * nominal_period_s_) ++gaps_;
+  if (reports_ == 2) {
+    mean_s_ = interval_s;
+    return;
+  }
+  const double weight = nominal_period_s_ / kTimeConstantS;
+  const double error_s = interval_s - mean_s_;
+  mean_s_ += weight * error_s;
+  variance_s2_ += weight * (error_s * error_s - variance_s2_);
+}
+
+double LinkStatistics::RateHz(std::int64_t now_ns) const {
+  const bool silent = now_ns - last_ns_ > kNanosecondsPerSecond;
+  return silent || mean_s_ <= 0 ? 0 : 1 / mean_s_;
+}
+
+double LinkStatistics::JitterMs() const { return std::sqrt(variance_s2_) * 1e3; }
 
 }  // namespace footing::link

@@ -1,10 +1,85 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-
-#include "daemon/sensor/reports/sample_ticks.h"
+#include <deque>
 
 namespace footing::link {
+
+struct SampleTicksConfig {
+  double nominal_period_s = 0.01;  ///< Of the sensor, not of its reports.
+  double window_s = 8;             ///< What the fit looks back on.
+  double refit_s = 1;     ///< Between fits once the ticks are known over a whole window ...
+  double search_s = 0.5;  ///< ... and until then.
+  /// How far the sensor's period may be from its nominal value (1 = the same).
+  double period_range = 0.05;
+  /// Without anything to fit to for this time, the ticks are no longer known: a period good to 10
+  /// ppm then is 1 ms off.
+  double coast_s = 100;
+};
+
+/// Finds when a device's sensor takes its samples, from which reports brought something new.
+///
+/// A sensor measures at even ticks and holds each value until the next; the radio sends what is
+/// held, whenever its turn comes. So a report that differs from the one before says that a tick
+/// lies between the two arrivals, and one that repeats it, that most likely none does (a device at
+/// rest repeats too; that is as likely at any phase, and so changes no choice). Intervals shorter
+/// than a period bound the ticks' phase, and many of them leave little choice: each fit takes, of a
+/// range of periods and all phases, the pair that the reports of the window speak for most. Devices
+/// that do not hold their samples speak for none, and get none.
+///
+/// Times are arrivals at the radio's end; a constant delay before them can't be seen.
+class SampleTicks {
+ public:
+  explicit SampleTicks(const SampleTicksConfig& config = {});
+
+  /// One report. `received_ns` must not go down. `changed`: it differs from the one before.
+  void Add(std::int64_t received_ns, bool changed);
+
+  bool known() const { return known_; }
+  /// The last tick at or before `at_ns`. Asked only when known.
+  std::int64_t TickBefore(std::int64_t at_ns) const;
+  double period_s() const { return period_s_; }
+  /// Standard deviation of the ticks' phase, s: the phases that explain the reports equally well
+  /// are taken as equally likely. Asked only when known.
+  double phase_sd_s() const;
+
+ private:
+  static constexpr int kBins = 256;
+
+  /// A pair of arrivals nearer to each other than a period.
+  struct Pair {
+    std::int64_t from_ns = 0;
+    std::int64_t to_ns = 0;
+    bool changed = false;
+  };
+  struct Fit {
+    double period_s = 0;
+    double phase = 0;         ///< Of the ticks after the newest arrival, in periods.
+    double score = 0;         ///< Pairs that speak for it, less those against.
+    double significance = 0;  ///< Standard deviations above the score of any phase.
+    int changes = 0;
+    double phase_range = 0;  ///< Width of the phases that score as high as the best, in periods.
+  };
+
+  void Refit();
+  /// The best phase at this period.
+  Fit At(double period_s, double window_s) const;
+  Fit Search(std::size_t first_stage, double period_s) const;
+  bool IsGood(const Fit& fit) const;
+
+  SampleTicksConfig config_;
+  std::deque<Pair> pairs_;  // Oldest first.
+  bool started_ = false;
+  std::int64_t begun_ns_ = 0;
+  std::int64_t last_ns_ = 0;
+  std::int64_t fitted_ns_ = 0;
+  bool known_ = false;
+  double period_s_;
+  double phase_range_ = 0;      // Of the last good fit, in periods.
+  std::int64_t tick_ns_ = 0;    // One of the ticks.
+  std::int64_t proved_ns_ = 0;  // When the last good fit was.
+};
 
 struct DeviceClockConfig {
   double nominal_period_s = 0.01;  ///< Of reports.
@@ -53,6 +128,31 @@ class DeviceClock {
   std::int64_t sampled_ns_ = 0;
   int loop_steps_ = 0;           ///< Since the loop started, at most kSteadySteps.
   double loop_variance_s2_ = 0;  ///< Of the loop's timing error, over about a second.
+};
+
+/// How a device's data reports arrive: rate, jitter, gaps. Rate and jitter are exponential means
+/// over about one second.
+class LinkStatistics {
+ public:
+  /// `nominal_period_s`: a longer interval than five of these is a gap.
+  explicit LinkStatistics(double nominal_period_s) : nominal_period_s_(nominal_period_s) {}
+
+  void Advance(std::int64_t received_ns);
+
+  /// 0 when nothing came for `now_ns` - one second.
+  double RateHz(std::int64_t now_ns) const;
+  double JitterMs() const;
+  std::uint64_t reports() const { return reports_; }
+  std::uint64_t gaps() const { return gaps_; }
+  std::int64_t last_ns() const { return last_ns_; }
+
+ private:
+  double nominal_period_s_;
+  std::uint64_t reports_ = 0;
+  std::uint64_t gaps_ = 0;
+  std::int64_t last_ns_ = 0;
+  double mean_s_ = 0;
+  double variance_s2_ = 0;
 };
 
 }  // namespace footing::link

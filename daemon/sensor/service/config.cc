@@ -1,7 +1,21 @@
 #include "daemon/sensor/service/config.h"
 
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/cli/cli.h"
+#include "common/net/address.h"
 #include "common/net/metrics_endpoint.h"
-#include "daemon/sensor/service/binding.h"
+#include "common/net/monitoring.h"
+#include "common/runtime/config.h"
+#include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
+#include "common/wire/wire.h"
+#include "daemon/sensor/service/device.h"
+#include "footing/v1/session.pb.h"
 
 namespace footing::sensor {
 
@@ -91,6 +105,226 @@ Result<void> Check(const Config& config) {
     return UsageError("config: board_contact_on_n must not be below board_contact_off_n");
   }
   return {};
+}
+
+Config Reloaded(const Config& before, const Config& wanted,
+                const std::vector<std::string>& changed_files,
+                const std::function<void(const std::string& line)>& say) {
+  Config old_config = before, new_config = wanted, next = before;
+  config::Binder old_binder, new_binder, next_binder;
+  old_config.Bind(old_binder);
+  new_config.Bind(new_binder);
+  next.stale_after_s = wanted.stale_after_s;
+  next.default_rig = wanted.default_rig;
+  next.motion_plus = wanted.motion_plus;
+  next.camera = wanted.camera;
+  next.status_interval_s = wanted.status_interval_s;
+  next.sessions = wanted.sessions;
+  next.access.token_file = wanted.access.token_file;
+  next.access.view_token_file = wanted.access.view_token_file;
+  next.access.clients_file = wanted.access.clients_file;
+  next.Bind(next_binder);
+  for (const auto& line :
+       config::DescribeReload(old_binder, next_binder, new_binder, changed_files)) {
+    say(line);
+  }
+  return next;
+}
+
+std::string OwnAddress(const std::string& name) {
+  if (service_manager::PassedSocket(name) >= 0) return "fd:" + name;
+  return transport::DefaultAddress(name, true).Text();
+}
+
+transport::AccessSettings AccessOf(const Config& config) {
+  transport::AccessSettings access = config.access;
+  const bool own_state = !config.state_directory.empty() && config.state_directory != "none";
+  if (access.identity_file.empty() && own_state) {
+    access.identity_file = config.state_directory + "/identity.pem";
+  }
+  return access;
+}
+
+Result<void> CheckStart(const Config& config) { return AccessOf(config).CheckStart(config.listen); }
+
+transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
+                                           const transport::ServerOptions& with_access) {
+  transport::ServerOptions options = with_access;
+  options.server_id = "footingd";
+  options.version = version;
+  options.channels = Channels();
+  options.channels.push_back(monitoring::StatsChannel());
+  options.tick_rate_hz = config.tick_rate_hz;
+  options.sessions = config.sessions;
+  options.capabilities = {"features", "boards", "raw",      "rumble", "leds", "assign",
+                          "nunchuk",  "camera", "sphere",   "setup",  "tare", "mounting",
+                          "layout",   "hands",  "contacts", "lease"};
+  return options;
+}
+
+namespace {
+
+using v1::Tick;
+
+template <typename List>
+void Append(std::vector<transport::ChannelBytes>& channels, int field, const List& list) {
+  channels.push_back({static_cast<std::uint32_t>(field), list.SerializeAsString()});
+}
+
+/// A channel of one repeated message; none when there is nothing in it.
+template <typename Values, typename List, typename Element>
+void AppendList(std::vector<transport::ChannelBytes>& channels, int field, const Values& values,
+                Element* (List::*add)()) {
+  if (values.empty()) return;
+  List list;
+  for (const auto& value : values) *(list.*add)() = wire::ToProto(value);
+  Append(channels, field, list);
+}
+
+}  // namespace
+
+std::vector<transport::Channel> Channels() {
+  return {{"status", Tick::kStatusFieldNumber, true},
+          {"motion", Tick::kMotionFieldNumber, false},
+          {"features", Tick::kFeaturesFieldNumber, false},
+          {"boards", Tick::kBoardsFieldNumber, false},
+          {"raw", Tick::kRawFieldNumber, false},
+          {"nunchuk", Tick::kNunchukFieldNumber, false},
+          {"camera", Tick::kCameraFieldNumber, false},
+          {"setup", Tick::kSetupFieldNumber, true},
+          {"hands", Tick::kHandsFieldNumber, false},
+          {"reference", Tick::kReferenceFieldNumber, false},
+          {"contacts", Tick::kContactsFieldNumber, false},
+          {"gamepad", Tick::kGamepadFieldNumber, false}};
+}
+
+std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
+  std::vector<transport::ChannelBytes> channels;
+  if (content.has_status) {
+    v1::DeviceStatusList list;
+    for (const auto& status : content.status) *list.add_devices() = wire::ToProto(status);
+    Append(channels, Tick::kStatusFieldNumber, list);
+  }
+  AppendList(channels, Tick::kMotionFieldNumber, content.motion, &v1::MotionSamples::add_samples);
+  AppendList(channels, Tick::kFeaturesFieldNumber, content.features, &v1::FeatureFrame::add_rigs);
+  AppendList(channels, Tick::kBoardsFieldNumber, content.boards, &v1::BoardSamples::add_samples);
+  if (content.has_setup) {
+    v1::SetupState state;
+    for (const auto& rig : content.setup) *state.add_rigs() = wire::ToProto(rig);
+    Append(channels, Tick::kSetupFieldNumber, state);
+  }
+  AppendList(channels, Tick::kNunchukFieldNumber, content.nunchuks,
+             &v1::NunchukSamples::add_samples);
+  AppendList(channels, Tick::kGamepadFieldNumber, content.gamepads,
+             &v1::GamepadSamples::add_samples);
+  AppendList(channels, Tick::kCameraFieldNumber, content.cameras, &v1::CameraSamples::add_samples);
+  AppendList(channels, Tick::kHandsFieldNumber, content.hands, &v1::HandSamples::add_samples);
+  AppendList(channels, Tick::kReferenceFieldNumber, content.reference,
+             &v1::ReferencePoses::add_poses);
+  AppendList(channels, Tick::kContactsFieldNumber, content.contacts,
+             &v1::ContactSamples::add_samples);
+  AppendList(channels, Tick::kRawFieldNumber, content.raw, &v1::RawReports::add_reports);
+  return channels;
+}
+
+namespace {
+
+struct Given {
+  std::string file, metrics;
+  std::vector<std::string> settings, listen, sources;
+  bool print = false, origin = false, check = false, json = false, quiet = false;
+  bool insecure_lan = false;
+};
+
+std::unique_ptr<CLI::App> NewParser(Given& given) {
+  auto app = cli::NewApp("footingd",
+                         "Sensor daemon: reads devices, publishes samples, features and forces.",
+                         "  footingd\n"
+                         "  footingd --source stream:unix:/tmp/devices.sock\n"
+                         "  footingd --set 'roles={\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}'\n");
+  app->add_option("--config", given.file, "Config file, JSON");
+  app->add_option("--set", given.settings,
+                  "Setting, key=value; may be repeated; overrides the config file");
+  app->add_option(
+      "--listen", given.listen,
+      "Address for clients, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated");
+  app->add_option(
+      "--source", given.sources,
+      "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated");
+  app->add_option("--metrics", given.metrics,
+                  "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH");
+  app->add_flag(
+      "--insecure-lan", given.insecure_lan,
+      "Allow --listen tcp: beyond this host WITHOUT ENCRYPTION; needs --set token_file=FILE");
+  CLI::Option* print =
+      app->add_flag("--print-config", given.print, "Print the effective config and exit");
+  app->add_flag(
+         "--origin", given.origin,
+         "With --print-config: where each value comes from, too (default, FILE:LINE, option)")
+      ->needs(print);
+  app->add_flag("--check-config", given.check,
+                "Check the config and the files that it names, and exit");
+  app->add_flag("--json", given.json, "Print the listening addresses as one JSON object");
+  app->add_flag("-q,--quiet", given.quiet, "Log only warnings and errors");
+  return app;
+}
+
+/// An option of its own goes before the file and --set.
+template <typename Value>
+void Override(const Value& given, const char* key, const char* option, Value& value,
+              config::Binder& binder) {
+  if (given.empty()) return;
+  value = given;
+  binder.SetOrigin(key, option);
+}
+
+/// `binder` is bound to `config`.
+Result<void> Apply(const Given& given, Config& config, config::Binder& binder) {
+  if (const auto done = binder.Apply(given.file, given.settings); !done) return done;
+  Override(given.listen, "listen", "--listen", config.listen, binder);
+  Override(given.sources, "sources", "--source", config.sources, binder);
+  Override(given.metrics, "metrics", "--metrics", config.metrics, binder);
+  if (given.insecure_lan) {
+    config.access.insecure_lan = true;
+    binder.SetOrigin("insecure_lan", "--insecure-lan");
+  }
+  return Check(config);
+}
+
+}  // namespace
+
+std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_code) {
+  Given given;
+  const auto app = NewParser(given);
+  exit_code = 0;
+  if (const auto code = cli::Parse(*app, argc, argv)) {
+    exit_code = *code;
+    return std::nullopt;
+  }
+  log::Start("footingd", given.quiet);
+  CommandLine line;
+  line.json = given.json;
+  config::Binder binder;
+  line.config.Bind(binder);
+  auto done = Apply(given, line.config, binder);
+  if (done && given.print) {
+    std::cout << (given.origin ? binder.PrintOrigins() : binder.Print()) << std::endl;
+  }
+  if (done && given.check) done = CheckStart(line.config);
+  if (!done) exit_code = cli::Report(done.error());
+  if (!done || given.print || given.check) return std::nullopt;
+  return line;
+}
+
+Result<Config> ReadConfigAgain(int argc, char** argv) {
+  Given given;
+  const auto app = NewParser(given);
+  if (cli::Parse(*app, argc, argv)) return Failure("the command line cannot be read again");
+  Config config;
+  config::Binder binder;
+  config.Bind(binder);
+  if (const auto done = Apply(given, config, binder); !done) return done.error();
+  return config;
 }
 
 }  // namespace footing::sensor

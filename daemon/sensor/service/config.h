@@ -1,18 +1,21 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "common/board/plate.h"
-#include "common/runtime/config.h"
 #include "common/base/result.h"
+#include "common/base/units.h"
+#include "common/board/geometry.h"
 #include "common/net/access.h"
 #include "common/net/address.h"
-#include "common/net/session_limits.h"
-#include "common/base/units.h"
-#include "daemon/sensor/devices/connection_limits.h"
+#include "common/net/limits.h"
+#include "common/net/server.h"
+#include "common/runtime/config.h"
+#include "daemon/sensor/devices/socket_source.h"
+#include "daemon/sensor/service/device.h"
 
 namespace footing::sensor {
 
@@ -48,5 +51,48 @@ Result<void> Check(const Config& config);
 
 /// The address of a source "stream:ADDRESS"; none for "hid".
 Result<std::optional<transport::Address>> ParseSource(const std::string& text);
+
+/// `before` with those settings of `wanted` that footingd takes while it runs. `say` gets a line
+/// with what changed, and one with what needs a restart.
+///
+/// `changed_files`: settings whose files have another content. The limits of sessions hold for
+/// sessions that come; stale_after_s, the token files and clients_file hold at once; default_rig,
+/// motion_plus, camera and status_interval_s for devices that attach.
+Config Reloaded(const Config& before, const Config& wanted,
+                const std::vector<std::string>& changed_files,
+                const std::function<void(const std::string& line)>& say);
+
+/// The socket that the service manager passed under this name, or the user's own.
+std::string OwnAddress(const std::string& name);
+
+/// Who may come over TCP and TLS; a configured state_directory has the certificate, too.
+transport::AccessSettings AccessOf(const Config& config);
+
+/// What the start checks besides the config itself, without its sockets and devices.
+Result<void> CheckStart(const Config& config);
+
+/// `with_access`: who may come in.
+transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
+                                           const transport::ServerOptions& with_access);
+
+/// The channels that footingd publishes; a channel is one field of v1::Tick.
+std::vector<transport::Channel> Channels();
+
+/// Each channel that has something to say, serialised once for all sessions.
+std::vector<transport::ChannelBytes> ToChannels(const TickContent& content);
+
+/// What the command line asks for.
+struct CommandLine {
+  Config config;
+  bool json = false;  ///< One JSON object on standard output once it listens.
+};
+
+/// Parses it and reads the config: defaults < file < --set < flags of their own. Without a value
+/// the program ends with `exit_code`: help, version, --print-config, --check-config or an error,
+/// already printed.
+std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_code);
+
+/// The config of the same command line once more, with what its file has now.
+Result<Config> ReadConfigAgain(int argc, char** argv);
 
 }  // namespace footing::sensor

@@ -5,20 +5,127 @@
 #include <string>
 #include <vector>
 
+#include "common/base/result.h"
+#include "common/stream/contacts.h"
 #include "common/stream/device.h"
+#include "common/stream/hands.h"
 #include "common/stream/sensor.h"
+#include "common/stream/setup.h"
 #include "daemon/sensor/devices/source.h"
+#include "daemon/sensor/kinds/decoded.h"
 #include "daemon/sensor/kinds/kind.h"
+#include "daemon/sensor/reports/device_clock.h"
 #include "daemon/sensor/reports/outbox.h"
-#include "daemon/sensor/service/binding.h"
-#include "daemon/sensor/service/board_chain.h"
-#include "daemon/sensor/service/links.h"
-#include "daemon/sensor/service/motion_chain.h"
-#include "daemon/sensor/service/mounted_sensor.h"
-#include "daemon/sensor/service/sample_timing.h"
-#include "daemon/sensor/service/tick_content.h"
+#include "daemon/sensor/service/chains.h"
 
 namespace footing::sensor {
+
+/// What a device is: its role on a rig (what one person wears or stands on).
+struct Binding {
+  std::string rig;
+  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+
+  bool operator==(const Binding&) const = default;
+};
+
+/// Usage error for a rig's name that is not 1 to 64 bytes of printable text: it goes to screens and
+/// files.
+Result<void> CheckRig(const std::string& rig);
+
+/// From "rig/role", e.g. "main/left_hand".
+Result<Binding> ParseBinding(const std::string& text);
+
+/// And back.
+std::string ToText(const Binding& binding);
+
+/// The first role for a device of this placement that is free on the rig: hands, legs and head on
+/// the body, left then right for boards; kUnspecified when all are taken.
+stream::DeviceRole FirstFreeRole(decode::Placement placement, const std::string& rig,
+                                 const std::vector<Binding>& taken);
+
+/// A board cannot be a hand, nor a remote a board.
+bool RoleFits(decode::Placement placement, stream::DeviceRole role);
+
+/// Where a device is attached: on one link, on two at once (a PS Move: Bluetooth carries the
+/// samples, USB the calibration), or on none since it was lost.
+class Links {
+ public:
+  void Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
+  /// True when the second link is the one that carries the samples from now on.
+  bool AttachSecond(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
+  /// One link is gone; the device is lost when that was the only one.
+  void Detach(devices::DeviceHandle handle, const std::string& reason);
+
+  bool attached() const { return attached_; }
+  bool Owns(devices::DeviceHandle handle) const {
+    return attached_ && (handle == handle_ || (second_ && handle == *second_));
+  }
+  /// The link that carries the samples.
+  devices::DeviceHandle handle() const { return handle_; }
+  /// The link that may answer feature reports.
+  devices::DeviceHandle feature_handle() const { return second_.value_or(handle_); }
+  const devices::DeviceIdentity& identity() const { return identity_; }
+  /// Why it was lost.
+  const std::string& reason() const { return reason_; }
+
+ private:
+  bool attached_ = false;
+  std::string reason_;
+  devices::DeviceHandle handle_ = 0;
+  devices::DeviceIdentity identity_;
+  std::optional<devices::DeviceHandle> second_;
+  devices::DeviceIdentity second_identity_;
+};
+
+/// When a device's samples were taken, and how its link fares.
+class SampleTiming {
+ public:
+  /// A new uninterrupted stream begins.
+  void Restart(const decode::Timing& timing);
+
+  /// A report with a new measurement or a repeated one (`changed` false).
+  void Take(std::int64_t received_ns, bool changed);
+  /// Of the newest sample; never goes back.
+  std::int64_t sampled_ns() const { return sampled_ns_; }
+  /// Of the older of two samples in the newest report, half a report earlier; `before_ns` is the
+  /// newest sample of the report before.
+  std::int64_t HalfEarlierNs(std::int64_t before_ns) const;
+
+  /// How well sample times are known (link::DeviceClock::sampled_sd_s), s; negative: not yet.
+  double sampled_sd_s() const { return clock_.sampled_sd_s(); }
+  const link::LinkStatistics& statistics() const { return statistics_; }
+
+ private:
+  decode::Timing timing_;
+  link::DeviceClock clock_;
+  link::LinkStatistics statistics_{0.01};
+  std::int64_t sampled_ns_ = 0;
+};
+
+/// Everything that one tick publishes.
+struct TickContent {
+  std::vector<stream::MotionSample> motion;
+  std::vector<stream::BoardSample> boards;
+  std::vector<stream::NunchukSample> nunchuks;
+  std::vector<stream::GamepadSample> gamepads;
+  std::vector<stream::CameraSample> cameras;
+  std::vector<stream::HandSample> hands;
+  std::vector<stream::ReferencePose> reference;
+  std::vector<stream::ContactSample> contacts;
+  std::vector<stream::RawReport> raw;
+  std::vector<stream::RigFeatures> features;
+  bool has_status = false;
+  std::vector<stream::DeviceStatus> status;
+  bool has_setup = false;
+  std::vector<stream::RigSetup> setup;
+};
+
+/// Bounds a tick against a device that floods; a tick of eight devices has some ten of each.
+inline constexpr std::size_t kMaxSamplesPerTick = 1024;
+/// The same of poses, which are some 2 KiB each.
+inline constexpr std::size_t kMaxReferencesPerTick = 64;
+/// And of contact samples, which are some 0.7 KiB.
+inline constexpr std::size_t kMaxContactsPerTick = 128;
 
 struct DeviceOptions {
   board::PlateConfig plate;

@@ -13,12 +13,10 @@
 #include "common/base/result.h"
 #include "daemon/sensor/devices/source.h"
 #include "daemon/sensor/features/rig_features.h"
-#include "daemon/sensor/mounting/exposure_clock.h"
-#include "daemon/sensor/mounting/refusals.h"
+#include "daemon/sensor/mounting/hands.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
-#include "daemon/sensor/service/log_line.h"
-#include "daemon/sensor/service/tick_content.h"
+#include "daemon/sensor/service/service.h"
 #include "daemon/sensor/setup/setup_store.h"
 
 namespace footing::sensor {

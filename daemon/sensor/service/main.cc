@@ -10,9 +10,8 @@
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
 #include "common/runtime/service_manager.h"
-#include "common/runtime/service_signals.h"
 #include "common/runtime/timer.h"
-#include "daemon/sensor/service/command_line.h"
+#include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/service.h"
 
 namespace {

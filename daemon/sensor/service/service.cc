@@ -5,26 +5,21 @@
 #include <optional>
 #include <utility>
 
-#include "common/runtime/clock.h"
-#include "common/net/advertiser.h"
-#include "common/net/lease_control.h"
-#include "common/runtime/log.h"
-#include "common/net/monitor.h"
-#include "common/runtime/timer.h"
+#include "common/base/units.h"
 #include "common/net/address.h"
+#include "common/net/discovery.h"
+#include "common/net/lease.h"
+#include "common/net/monitoring.h"
 #include "common/net/server.h"
-#include "common/base/time.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/log.h"
+#include "common/runtime/timer.h"
 #include "daemon/sensor/devices/hid_source.h"
 #include "daemon/sensor/devices/socket_source.h"
 #include "daemon/sensor/service/commands.h"
+#include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/hub.h"
-#include "daemon/sensor/service/limited_log.h"
-#include "daemon/sensor/service/log_line.h"
-#include "daemon/sensor/service/publish.h"
-#include "daemon/sensor/service/reload.h"
-#include "daemon/sensor/service/server_options.h"
-#include "daemon/sensor/setup/calibration_store.h"
-#include "daemon/sensor/setup/disk_writer.h"
+#include "daemon/sensor/setup/setup_store.h"
 #include "daemon/sensor/setup/state_directory.h"
 
 namespace footing::sensor {
@@ -290,5 +285,14 @@ void Service::Stop(const std::string& reason, std::function<void()> done) {
 void Service::Reload(const Config& wanted) { implementation_->Reload(wanted); }
 std::string Service::Stuck() const { return implementation_->Stuck(); }
 std::vector<std::string> Service::listening_on() const { return implementation_->listening_on(); }
+
+void Log(const LogLine& line) {
+  const log::Level level = line.warning ? log::Level::kWarning : log::Level::kInfo;
+  log::Write(level, line.text, {line.device, 0, ""});
+}
+
+void LogOverload(const transport::OverloadLine& line) {
+  log::Write(log::Level::kWarning, line.text, {"", line.session, line.channel});
+}
 
 }  // namespace footing::sensor

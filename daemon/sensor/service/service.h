@@ -1,12 +1,17 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <boost/asio/io_context.hpp>
+
 #include "common/base/result.h"
+#include "common/net/limits.h"
+#include "common/net/server.h"
 #include "daemon/sensor/service/config.h"
 
 namespace footing::sensor {
@@ -36,6 +41,39 @@ class Service {
   class Implementation;
   explicit Service(std::shared_ptr<Implementation> implementation);
   std::shared_ptr<Implementation> implementation_;
+};
+
+/// A line for the log, the serial of the device that it is about, if any, and how much it matters.
+struct LogLine {
+  std::string text;
+  std::string device = {};
+  bool warning = false;
+};
+
+void Log(const LogLine& line);
+void LogOverload(const transport::OverloadLine& line);
+
+/// Lines for the log that others cause, limited to 20 at once and 2 a second: a device that comes
+/// and goes in a loop fills neither the disk nor the loop's time. The first line after some were
+/// left out says how many.
+class LimitedLog {
+ public:
+  explicit LimitedLog(std::function<void(const LogLine&)> say) : say_(std::move(say)) {}
+
+  void Say(LogLine line, std::int64_t now_ns) {
+    if (!bucket_.Take(now_ns)) {
+      ++left_out_;
+      return;
+    }
+    const auto before = std::exchange(left_out_, 0);
+    if (before != 0) line.text += " (" + std::to_string(before) + " lines before were left out)";
+    say_(line);
+  }
+
+ private:
+  std::function<void(const LogLine&)> say_;
+  transport::TokenBucket bucket_{2, 20};
+  std::uint64_t left_out_ = 0;
 };
 
 }  // namespace footing::sensor

@@ -2,15 +2,70 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
+
+#include "common/base/result.h"
+#include "common/board/geometry.h"
 #include "common/stream/setup.h"
-#include "daemon/sensor/setup/storage.h"
-#include "daemon/sensor/setup/stored_setup.h"
 
 namespace footing::setup {
+
+/// Texts kept by name between two runs. Null functions: nothing is kept.
+struct Storage {
+  /// None if nothing was saved under this name.
+  std::function<std::optional<std::string>(const std::string& name)> load;
+  std::function<void(const std::string& name, const std::string& content)> save;
+  /// For content that its reader does not understand.
+  std::function<void(const std::string& name, const std::string& why)> refuse;
+};
+
+/// What `read` makes of the text saved under this name. None if there is none; text that it cannot
+/// read is refused and none as well.
+template <typename Content>
+std::optional<Content> Load(const Storage& storage, const std::string& name,
+                            Result<Content> (*read)(const std::string& text)) {
+  if (!storage.load) return std::nullopt;
+  const std::optional<std::string> text = storage.load(name);
+  if (!text) return std::nullopt;
+  Result<Content> content = read(*text);
+  if (content) return std::move(content).value();
+  if (storage.refuse) storage.refuse(name, content.error().message);
+  return std::nullopt;
+}
+
+struct StoredMounting {
+  std::string role;  ///< "rig/role" that it was found for; stale on another.
+  Eigen::Quaterniond rotation_MS = Eigen::Quaterniond::Identity();
+  double residual_rad = 0;
+  bool slipped = false;  ///< Since it was found.
+};
+
+struct StoredTare {
+  board::CornerForces offset;
+  double residual_n = 0;
+};
+
+/// What a device reports of its own calibration.
+struct StoredCalibration {
+  std::string serial;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// The parts of a stored set-up. Roles ("rig/role"), tares, mountings and moved boards are by
+/// serial, layouts and items by rig.
+using Roles = std::map<std::string, std::string>;
+using Tares = std::map<std::string, StoredTare>;
+using Mountings = std::map<std::string, StoredMounting>;
+using Layouts = std::map<std::string, stream::BoardLayout>;
+using Items = std::map<std::string, std::vector<stream::SetupItem>>;
+using MovedBoards = std::map<std::string, bool>;
 
 /// The set-up of all rigs: roles assigned, tares, mountings, layouts, what was done when, and what
 /// is stale since. Every change is saved at once, one text per part (setup_json.h).
@@ -66,5 +121,38 @@ class SetupStore {
   MovedBoards moved_;
   std::uint64_t revision_ = 1;
 };
+
+/// The calibrations of devices that cannot always be read from the device, each by its serial.
+class CalibrationStore {
+ public:
+  explicit CalibrationStore(Storage storage) : storage_(std::move(storage)) {}
+
+  /// None if none was saved for this device, or what was saved is refused.
+  std::optional<std::vector<std::uint8_t>> Load(const std::string& serial) const;
+  void Save(const std::string& serial, const std::vector<std::uint8_t>& bytes) const;
+
+ private:
+  Storage storage_;
+};
+
+/// The stored set-up as JSON text, each part a file of its own. A part is read as a whole or not at
+/// all: a missing key or a wrong type is an error. Numbers that are not finite are read as 0.
+std::string ToJson(const Roles& roles);
+std::string ToJson(const Tares& tares);
+std::string ToJson(const Mountings& mountings);
+std::string ToJson(const Layouts& layouts);
+std::string ToJson(const Items& items);
+std::string ToJson(const MovedBoards& boards);
+std::string ToJson(const StoredCalibration& calibration);
+
+Result<Roles> RolesFromJson(const std::string& text);
+Result<Tares> TaresFromJson(const std::string& text);
+/// Without the mountings whose quaternion is not a rotation.
+Result<Mountings> MountingsFromJson(const std::string& text);
+Result<Layouts> LayoutsFromJson(const std::string& text);
+Result<Items> ItemsFromJson(const std::string& text);
+Result<MovedBoards> MovedBoardsFromJson(const std::string& text);
+/// At least one byte, in hex.
+Result<StoredCalibration> CalibrationFromJson(const std::string& text);
 
 }  // namespace footing::setup

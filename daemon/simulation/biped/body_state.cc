@@ -1,6 +1,10 @@
 #include "daemon/simulation/biped/body_state.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "common/base/units.h"
 
 namespace footing::biped {
 namespace {
@@ -44,6 +48,69 @@ BodyState Read(const BipedParameters& parameters, const physics::Observation& ob
     leg.touching = leg.normal_force_n > kTouchForceN;
   }
   return state;
+}
+
+namespace {
+
+using stream::Gait;
+
+struct StableRange {
+  Gait gait;
+  double speed_max_mps;
+};
+
+constexpr StableRange kStableRanges[] = {
+    {Gait::kStep, 0}, {Gait::kWalk, 1.75}, {Gait::kRun, 6.0}, {Gait::kJump, 2.0}};
+static_assert(std::size(kStableRanges) == stream::kGaits.size(), "a range for every gait");
+constexpr double kHeightMinM = 0.05;
+constexpr double kHeightMaxM = 0.7;
+/// Forward faster than the first, jumps are lower: down to the second height at 2 m/s.
+constexpr double kHighestUpToMps = 1.0;
+constexpr double kFastHeightMaxM = 0.5;
+
+/// Every gait turns by up to kTurnPerStepMaxDeg a step, a run faster than this by less: linearly,
+/// down to the fastest run's. So does a leap out of a run, faster than jumps are: by as much as
+/// gives the landing the sideways speed of the fastest jump.
+constexpr double kRunFullTurnMps = 4;
+constexpr double kFastestRunMps = 6, kFastestRunTurnDeg = 5;
+constexpr double kFastestJumpMps = 2;
+
+double HeightMax(double speed_mps, double speed_max_mps) {
+  const double share = (speed_mps - kHighestUpToMps) / (speed_max_mps - kHighestUpToMps);
+  return std::lerp(kHeightMaxM, kFastHeightMaxM, std::clamp(share, 0.0, 1.0));
+}
+
+}  // namespace
+
+double TurnLimit(Gait gait, double speed_mps) {
+  if (gait == Gait::kUnspecified) return 0;
+  if (gait == Gait::kJump && speed_mps > kFastestJumpMps) {
+    return DegreesToRadians(kTurnPerStepMaxDeg * kFastestJumpMps / speed_mps);
+  }
+  if (gait != Gait::kRun) return DegreesToRadians(kTurnPerStepMaxDeg);
+  const double share = (speed_mps - kRunFullTurnMps) / (kFastestRunMps - kRunFullTurnMps);
+  return DegreesToRadians(
+      std::lerp(kTurnPerStepMaxDeg, kFastestRunTurnDeg, std::clamp(share, 0.0, 1.0)));
+}
+
+GaitCommand Limited(const GaitCommand& command) {
+  const bool finite = std::isfinite(command.speed_mps) && std::isfinite(command.height_m) &&
+                      std::isfinite(command.turn_per_step_rad) && std::isfinite(command.cadence_hz);
+  if (!finite) return {};
+  for (const StableRange& range : kStableRanges) {
+    if (range.gait != command.gait) continue;
+    GaitCommand limited = command;
+    limited.speed_mps = std::clamp(command.speed_mps, 0.0, range.speed_max_mps);
+    const bool jumps = command.gait == Gait::kJump;
+    const double height_max_m =
+        jumps ? HeightMax(limited.speed_mps, range.speed_max_mps) : kHeightMaxM;
+    limited.height_m = std::clamp(command.height_m, kHeightMinM, height_max_m);
+    const double turn_max_rad = TurnLimit(command.gait, limited.speed_mps);
+    limited.turn_per_step_rad = std::clamp(command.turn_per_step_rad, -turn_max_rad, turn_max_rad);
+    limited.cadence_hz = std::max(0.0, command.cadence_hz);
+    return limited;
+  }
+  return {};
 }
 
 }  // namespace footing::biped

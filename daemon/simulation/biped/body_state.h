@@ -2,7 +2,8 @@
 
 #include <array>
 
-#include "daemon/simulation/biped/parameters.h"
+#include "common/stream/character.h"
+#include "daemon/simulation/biped/model.h"
 #include "daemon/simulation/biped/world.h"
 
 namespace footing::biped {
@@ -46,5 +47,27 @@ struct BodyState {
 /// The state seen in the world's last observation.
 BodyState Read(const BipedParameters& parameters, const physics::Observation& observation,
                double time_s);
+
+/// What a person, or a program in a person's place, wants of the character.
+struct GaitCommand {
+  stream::Gait gait = stream::Gait::kStep;
+  double speed_mps = 0;          ///< Along the heading; ignored while stepping in place.
+  double height_m = 0.2;         ///< Rise of the COM after lift-off in a jump.
+  double turn_per_step_rad = 0;  ///< Change of heading at every touchdown; positive is left.
+  double cadence_hz = 0;         ///< Steps a second, of walking and running; 0: the gait's own.
+
+  bool operator==(const GaitCommand&) const = default;
+};
+
+/// The commands under which each gait was found stable (docs/gait.md).
+/// The largest turn of a step at any speed: what a mapping may ask for.
+inline constexpr double kTurnPerStepMaxDeg = 8;
+
+/// The largest turn of a step, rad, by gait and speed: a faster gait turns less.
+double TurnLimit(stream::Gait gait, double speed_mps);
+
+/// The command within the range in which its gait was found stable; one that is not finite, or of
+/// no known gait, is stepping in place.
+GaitCommand Limited(const GaitCommand& command);
 
 }  // namespace footing::biped

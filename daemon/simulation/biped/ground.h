@@ -1,13 +1,34 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
 #include "common/stream/character.h"
-#include "daemon/simulation/biped/box.h"
 #include "daemon/simulation/biped/track.h"
 
 namespace footing::terrain {
+
+/// A segment's ground as a solid box.
+struct GroundBox {
+  Eigen::Vector3d centre_W_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WS = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+};
+
+/// The box under a segment; its top face is the ground. Where the track turns, two boxes would
+/// leave a wedge open on the outer side: one of them reaches under the other to close it, the lower
+/// one, so that a step begins where the track has it. A pit's edges stay where they are. The first
+/// segment has no `previous` and begins before the start, so that one can stand on the line; the
+/// last one has no `next`.
+GroundBox BoxOf(const stream::TrackSegment* previous, const stream::TrackSegment& segment,
+                const stream::TrackSegment* next);
+/// The same by its place in the track.
+GroundBox BoxOf(const stream::Track& track, std::size_t index);
 
 /// How far below the track a pit's floor counts as, for height queries.
 inline constexpr double kPitDepthM = 2.0;
@@ -49,5 +70,27 @@ struct GroundText {
 /// (HasPlane), or a box for each segment that is not a pit; the first one begins 3 m before its
 /// start.
 GroundText GroundMjcf(const stream::Track& track);
+
+/// Where the ground's height changes at once, across the track.
+struct Edge {
+  double distance_m = std::numeric_limits<double>::infinity();  ///< Along the track.
+  double rise_m = 0;  ///< From its near to its far side as one goes along the track.
+  bool pit = false;   ///< On either side: then the rise is that of the ribbon.
+};
+
+/// The ground around a point of a track.
+struct Spot {
+  double height_m = 0;
+  double slope = 0;        ///< Rise over run along the track.
+  double heading_rad = 0;  ///< Of the track here.
+  bool pit = false;        ///< The height is its floor's.
+  Edge behind, ahead;      ///< Of this segment; infinitely far where the ground goes on.
+};
+
+/// Smaller changes of height do not count as edges.
+inline constexpr double kLowestEdgeM = 0.01;
+
+/// Looks at one segment and its two neighbours. Beside the ribbon as at the nearest place.
+Spot Survey(const stream::Track& track, double x_m, double y_m);
 
 }  // namespace footing::terrain

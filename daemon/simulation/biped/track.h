@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 
+#include <Eigen/Core>
+
 #include "common/base/result.h"
-#include "common/stream/character.h"
 #include "common/body/centre_line.h"
+#include "common/stream/character.h"
 
 /// Tracks as data: a ribbon of segments, 4 m wide in the paper (section 8.2).
 namespace footing::terrain {
@@ -55,5 +59,47 @@ using track::LengthTo;
 using track::Locate;
 using track::PlaceAt;
 using track::TrackPlace;
+
+/// Ground that is added to a track's end while a character is on it, as in the gait paper's terrain
+/// editor (section 8). Nothing here allocates while the track's capacity suffices.
+/// A segment to add: 2 to 4 m long, of a pit 0.3 to 1.5 m, its slope within 5 degrees, its curve
+/// within 15 degrees, its step within 0.10 m. A pit has none of these three.
+using NewSegment = track::Piece;
+
+/// More segments than this are not kept: the oldest one goes for each that is added.
+inline constexpr std::size_t kMostSegments = 256;
+/// The same of an endless track, whose past nobody comes back to.
+inline constexpr std::size_t kMostEndlessSegments = 64;
+std::size_t MostSegments(const stream::Track& track);
+/// The oldest segment only goes when the character is at least so many segments further.
+inline constexpr int kKeptBehind = 12;
+
+/// Why a segment may not be added, as text of static storage that names the limit; null when it
+/// may. `here` is the index of the segment on which the character is.
+const char* WhyNotAppended(const stream::Track& track, const NewSegment& segment, int here);
+
+/// Adds a segment that may be added, counts the revision up, and drops the oldest segment beyond
+/// MostSegments.
+void Append(const NewSegment& segment, stream::Track& track);
+/// The same with a segment that Append has placed on another copy of the track.
+void Add(const stream::TrackSegment& placed, stream::Track& track);
+
+/// A track that continues itself ahead of a character, so that whoever practises stays on it. The
+/// segments follow the direction of travel of the last ten metres: short turns to the left and
+/// right leave the track straight, a lasting turn bends it.
+/// So much of the track lies ahead of the character at least, m.
+inline constexpr double kEndlessAheadM = 8;
+
+/// Takes a movement of the body, m, into the average direction of travel, a vector of length 1 or
+/// less.
+void FollowCourse(const Eigen::Vector2d& moved_m, Eigen::Vector2d& course);
+
+/// The segment that an endless track needs next; none while enough of it lies ahead. `place` is the
+/// character's on the track and `p_W_m` where its body is. Beside the ribbon the segment begins
+/// under the character.
+std::optional<stream::TrackSegment> EndlessSegment(const stream::Track& track,
+                                                   const TrackPlace& place,
+                                                   const Eigen::Vector2d& p_W_m,
+                                                   const Eigen::Vector2d& course);
 
 }  // namespace footing::terrain

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/json_text.h"
-#include "common/base/number.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
 #include "daemon/simulation/biped/track.h"
 

@@ -1,11 +1,12 @@
 #include "daemon/simulation/biped/world.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
-#include "common/base/fnv.h"
-#include "daemon/simulation/biped/parts.h"
+#include "common/base/text.h"
 
 namespace footing::physics {
 namespace {
@@ -181,6 +182,184 @@ void World::Restore(const WorldState& state) {
   p.model->opt.collision = mjCOL_ALL;
   mj_step1(p.model.get(), &d);
   ReadMotion(*p.model, d, p.links, p.hips, p.feet, p.mass_kg, p.observation);
+}
+
+namespace {
+
+/// No point of the mechanism goes as far in one step: 50 m/s at 2 ms. A world that does has
+/// diverged.
+constexpr double kFarthestStepM = 0.1;
+
+}  // namespace
+
+Clearance::Clearance(const mjModel& model, const std::vector<int>& feet) {
+  const int grounds = model.body_geomnum[0];
+  ground_.resize(static_cast<std::size_t>(grounds));
+  for (int geom = 0; geom < grounds; ++geom) MoveGround(model, geom);
+  for (int geom = grounds; geom < model.ngeom; ++geom) {
+    if (std::find(feet.begin(), feet.end(), geom) == feet.end()) shells_.push_back(geom);
+  }
+  pairs_complete_ = model.npair == grounds * static_cast<int>(feet.size());
+}
+
+void Clearance::MoveGround(const mjModel& model, int geom) {
+  Ground& ground = ground_[static_cast<std::size_t>(geom)];
+  ground.centre_W_m = Eigen::Map<const Eigen::Vector3d>(model.geom_pos + 3 * geom);
+  mjtNum R_WG[9];
+  mju_quat2Mat(R_WG, model.geom_quat + 4 * geom);
+  ground.R_GW = Eigen::Map<const Eigen::Matrix3d>(R_WG);  // Of row order: the transpose.
+  const bool box = model.geom_type[geom] == mjGEOM_BOX;
+  ground.half_size_m =
+      box ? Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(model.geom_size + 3 * geom))
+          : Eigen::Vector3d(INFINITY, INFINITY, 0);
+}
+
+/// Whether a sphere may touch the ground: one beyond any of its faces does not.
+bool Clearance::Reaches(const Ground& ground, const Eigen::Vector3d& centre_W_m, double radius_m) {
+  const Eigen::Vector3d offset_W_m = centre_W_m - ground.centre_W_m;
+  for (const int axis : {2, 0, 1}) {  // Mostly it is above.
+    const double along_m = ground.R_GW.row(axis).dot(offset_W_m);
+    const double reach_m = ground.half_size_m[axis] + radius_m;
+    if (along_m > reach_m) return false;
+    if (along_m < -reach_m && std::isfinite(ground.half_size_m.x())) return false;
+  }
+  return true;
+}
+
+bool Clearance::FeetAlone(const mjModel& model, const mjData& state) const {
+  if (!pairs_complete_) return false;
+  for (const int shell : shells_) {
+    const Eigen::Vector3d centre_W_m =
+        Eigen::Map<const Eigen::Vector3d>(state.geom_xpos + 3 * shell);
+    const double radius_m = model.geom_rbound[shell] + kFarthestStepM;
+    for (const Ground& ground : ground_) {
+      if (Reaches(ground, centre_W_m, radius_m)) return false;
+    }
+  }
+  return true;
+}
+
+namespace {
+
+void IgnoreWarning(const char*) {}
+void AbortOnError(const char* message) { CheckFailed(message, "MuJoCo", 0); }
+
+/// Once, since they are globals of MuJoCo and worlds are compiled on several threads.
+void TakeItsMessages() {
+  [[maybe_unused]] static const bool taken = [] {
+    mju_user_warning = IgnoreWarning;
+    mju_user_error = AbortOnError;
+    return true;
+  }();
+}
+
+struct DeleteVfs {
+  void operator()(mjVFS* files) const {
+    mj_deleteVFS(files);
+    delete files;
+  }
+};
+
+}  // namespace
+
+Result<ModelPointer> Compile(const std::string& mjcf) {
+  TakeItsMessages();
+  const char* name = "world.xml";
+  std::unique_ptr<mjVFS, DeleteVfs> files(new mjVFS);
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(mjcf.size()));
+  std::memcpy(files->filedata[0], mjcf.data(), mjcf.size());
+
+  std::array<char, 1000> reason{};
+  ModelPointer model(mj_loadXML(name, files.get(), reason.data(), static_cast<int>(reason.size())));
+  if (!model) {
+    return InvalidData(std::string("the world does not compile: ") + reason.data() +
+                       "; check the numbers of the biped's and the track's file");
+  }
+  return model;
+}
+
+Result<int> IdOf(const mjModel& model, mjtObj type, const std::string& name) {
+  const int id = mj_name2id(&model, type, name.c_str());
+  if (id < 0) return InvalidData("the world has no \"" + name + "\"; check the MJCF writer");
+  return id;
+}
+
+namespace {
+
+Eigen::Vector3d Vector(const mjtNum* values) { return {values[0], values[1], values[2]}; }
+
+}  // namespace
+
+void ReadContacts(const mjModel& model, mjData& state, const std::array<int, kLegs>& feet,
+                  Observation& observation) {
+  observation.normal_force_n.fill(0);
+  observation.contact_force_W_n.setZero();
+  observation.other_contact = false;
+  for (int i = 0; i < state.ncon; ++i) {
+    const mjContact& contact = state.contact[i];
+    mjtNum force[6];  // Contact frame: its first axis is the normal, from geom1 to geom2.
+    mj_contactForce(&model, &state, i, force);
+    for (int axis = 0; axis < 3; ++axis) {
+      observation.contact_force_W_n += force[axis] * Vector(contact.frame + 3 * axis);
+    }
+    bool foot = false;
+    for (int leg = 0; leg < kLegs; ++leg) {
+      if (contact.geom1 != feet[leg] && contact.geom2 != feet[leg]) continue;
+      observation.normal_force_n[leg] += force[0];
+      foot = true;
+    }
+    if (!foot) observation.other_contact = true;
+  }
+}
+
+void ReadMotion(const mjModel& model, const mjData& state, const std::array<int, kLinks>& links,
+                const std::array<int, kLegs>& hips, const std::array<int, kLegs>& feet,
+                double mass_kg, Observation& observation) {
+  const int root = links[0];
+  observation.diverged = state.warning[mjWARN_BADQPOS].number > 0 ||
+                         state.warning[mjWARN_BADQVEL].number > 0 ||
+                         state.warning[mjWARN_BADQACC].number > 0;
+  observation.p_WB = Vector(state.qpos);
+  observation.v_WB = Vector(state.qvel);
+  observation.R_WB =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.xmat + 9 * root);
+  observation.w_WB = observation.R_WB * Vector(state.qvel + 3);
+  for (int i = 0; i < kJoints; ++i) {
+    observation.joint_position[i] = state.qpos[7 + i];
+    observation.joint_velocity[i] = state.qvel[kRootDofs + i];
+  }
+  observation.p_WC = Vector(state.subtree_com + 3 * root);
+  // cvel is (angular, linear) at the mechanism's COM, so each link's COM moves with
+  // v + w x (its COM - the mechanism's COM).
+  Eigen::Vector3d momentum_W = Eigen::Vector3d::Zero();
+  for (const int link : links) {
+    const Eigen::Vector3d w = Vector(state.cvel + 6 * link);
+    const Eigen::Vector3d v = Vector(state.cvel + 6 * link + 3);
+    const Eigen::Vector3d arm = Vector(state.xipos + 3 * link) - observation.p_WC;
+    momentum_W += model.body_mass[link] * (v + w.cross(arm));
+  }
+  observation.v_WC = momentum_W / mass_kg;
+  for (int leg = 0; leg < kLegs; ++leg) {
+    observation.p_WH[leg] = Vector(state.xpos + 3 * hips[leg]);
+    observation.p_WF[leg] = Vector(state.geom_xpos + 3 * feet[leg]);
+  }
+}
+
+double HiddenRootForce(const mjModel& model, const mjData& state, int root,
+                       const Eigen::Vector3d& push_W_n) {
+  double largest = 0;
+  for (int i = 0; i < kRootDofs; ++i) {
+    largest = std::max({largest, std::fabs(state.qfrc_applied[i]), std::fabs(state.qfrc_passive[i]),
+                        std::fabs(state.qfrc_actuator[i])});
+  }
+  for (int body = 0; body < model.nbody; ++body) {
+    for (int i = 0; i < 6; ++i) {
+      const double expected = body == root && i < 3 ? push_W_n[i] : 0;
+      largest = std::max(largest, std::fabs(state.xfrc_applied[6 * body + i] - expected));
+    }
+  }
+  return largest;
 }
 
 }  // namespace footing::physics

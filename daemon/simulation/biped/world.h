@@ -1,12 +1,14 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <mujoco/mujoco.h>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "common/base/result.h"
 
@@ -101,5 +103,85 @@ class World {
   explicit World(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };
+
+/// Which pairs of geoms the next step has to look at.
+///
+/// Upright, only the feet can touch the ground; the other geoms of the mechanism (its shells) are
+/// half a metre above it. MuJoCo would nevertheless sort the bodies by their boxes and compare
+/// each shell with each geom of the ground, every step. Where the model lists each foot with each
+/// geom of the ground as a pair, a world whose shells are clear of the ground looks at these pairs
+/// alone. The contacts, and their order, are the same: a pair has the numbers of its geoms.
+class Clearance {
+ public:
+  Clearance() = default;
+  /// `feet`: geoms. Geoms of the world body must be boxes or planes.
+  Clearance(const mjModel& model, const std::vector<int>& feet);
+
+  /// Reads geom `geom` of the ground again, after it was moved or changed.
+  void MoveGround(const mjModel& model, int geom);
+  /// True when no shell can touch the ground within the step to come, as of the positions that
+  /// `state` has.
+  bool FeetAlone(const mjModel& model, const mjData& state) const;
+
+ private:
+  /// A box, or a plane as a box without ends below its face.
+  struct Ground {
+    Eigen::Vector3d centre_W_m = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d R_GW = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  };
+  static bool Reaches(const Ground& ground, const Eigen::Vector3d& centre_W_m, double radius_m);
+
+  std::vector<Ground> ground_;  ///< By geom; the world body's are the model's first ones.
+  std::vector<int> shells_;
+  bool pairs_complete_ = false;
+};
+
+struct DeleteModel {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DeleteState {
+  void operator()(mjData* state) const { mj_deleteData(state); }
+};
+using ModelPointer = std::unique_ptr<mjModel, DeleteModel>;
+using StatePointer = std::unique_ptr<mjData, DeleteState>;
+
+/// Compiles MJCF text without touching a file (MuJoCo's own virtual file system), and keeps
+/// MuJoCo's warnings from its log file: they are counted in mjData and read from there.
+Result<ModelPointer> Compile(const std::string& mjcf);
+
+/// The id of a named object, or an Error that says which is missing.
+Result<int> IdOf(const mjModel& model, mjtObj type, const std::string& name);
+
+inline constexpr int kRootDofs = 6;
+inline constexpr int kDofs = kRootDofs + kJoints;
+
+/// What a World owns.
+struct World::Parts {
+  ModelPointer model;
+  StatePointer state;
+  std::array<int, kLinks> links{};
+  std::array<int, kLegs> hips{};
+  std::array<int, kLegs> feet{};
+  std::vector<int> ground;
+  Clearance clearance;
+  double mass_kg = 0;
+  std::uint64_t steps = 0;
+  /// As integrated: mj_step1 normalises qpos in place, and doing so twice may change the last bit.
+  std::array<double, 4> root_quaternion{1, 0, 0, 0};
+  double root_force_max_n = 0;
+  Observation observation;
+};
+
+/// Reads the forces that acted in the step just made, before the next step's contacts are found.
+void ReadContacts(const mjModel& model, mjData& state, const std::array<int, kLegs>& feet,
+                  Observation& observation);
+/// Reads positions and velocities after mj_step1 has computed them.
+void ReadMotion(const mjModel& model, const mjData& state, const std::array<int, kLinks>& links,
+                const std::array<int, kLegs>& hips, const std::array<int, kLegs>& feet,
+                double mass_kg, Observation& observation);
+/// Largest entry, N or N m, of what acts on the root beside contact, gravity and the push.
+double HiddenRootForce(const mjModel& model, const mjData& state, int root,
+                       const Eigen::Vector3d& push_W_n);
 
 }  // namespace footing::physics

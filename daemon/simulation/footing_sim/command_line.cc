@@ -4,10 +4,57 @@
 #include <iostream>
 
 #include "common/cli/cli.h"
+#include "common/net/address.h"
+#include "common/net/metrics_endpoint.h"
+#include "common/runtime/config.h"
 #include "common/runtime/log.h"
-#include "daemon/simulation/footing_sim/service.h"
+#include "daemon/simulation/gait_service/gait_run.h"
+#include "daemon/simulation/pose_service/pose_line.h"
 
 namespace footing::footing_sim {
+
+void Config::Bind(config::Binder& binder) {
+  binder.Text("engine", engine,
+              "Engine: gait (a walking biped) or pose (a body reconstructed over two boards)");
+  serving.Bind(binder);
+  gait.Bind(binder);
+  pose.Bind(binder);
+}
+
+Result<void> Check(const Config& config) {
+  if (config.engine != "gait" && config.engine != "pose") {
+    return UsageError("unknown --engine " + config.engine + "; there are: gait, pose");
+  }
+  const auto sensor = transport::AddressOrDefault(config.serving.sensor, "sensor");
+  if (!sensor) return UsageError("--sensor: " + sensor.error().message);
+  if (!config.serving.metrics.empty()) {
+    const auto metrics = monitoring::MetricsEndpoint::Check(config.serving.metrics);
+    if (!metrics) return metrics;
+  }
+  if (const auto checked = gait_service::Check(config.gait); !checked) return checked;
+  return pose_service::Check(config.pose);
+}
+
+Result<void> CheckApply(const Config& config, const std::vector<std::string>& settings) {
+  const bool pose = config.engine == "pose";
+  config::Binder others;  // Has the keys of the engine that does not run.
+  gait_service::Config gait;
+  pose_service::Config body;
+  if (pose) {
+    gait.Bind(others);
+  } else {
+    body.Bind(others);
+  }
+  for (const std::string& setting : settings) {
+    const std::string key = setting.substr(0, setting.find('='));
+    if (!others.Has(key)) continue;
+    return UsageError(key + " does not apply to --engine " + config.engine +
+                      ": it is a setting of --engine " + (pose ? "gait" : "pose") +
+                      "; leave it out, or choose that engine");
+  }
+  return {};
+}
+
 namespace {
 
 constexpr const char* kExamples =
@@ -122,6 +169,57 @@ Result<Config> ReadConfigAgain(int argc, char** argv) {
   config.Bind(binder);
   if (const auto done = Apply(given, config, binder); !done) return done.error();
   return config;
+}
+
+namespace {
+
+using gait_service::GaitLine;
+using pose_service::PoseLine;
+
+auto MakePoseLine(const Config& config) {
+  return [&config](int wake) { return PoseLine::Create(config.serving, config.pose, wake); };
+}
+
+auto MakeGaitLine(const Config& config) {
+  return [&config](int wake) { return GaitLine::Create(config.serving, config.gait, wake); };
+}
+
+}  // namespace
+
+Result<serving::Served> StartService(boost::asio::io_context& io, const Config& given,
+                                     const std::string& version) {
+  Config config = given;
+  config.serving.version = version;
+  if (config.engine == "pose") {
+    return serving::StartServing<PoseLine>(io, config.serving, MakePoseLine(config));
+  }
+  return serving::StartServing<GaitLine>(io, config.serving, MakeGaitLine(config));
+}
+
+Result<void> CheckService(const Config& config) {
+  if (config.engine == "pose") {
+    return serving::CheckServing<PoseLine>(config.serving, MakePoseLine(config));
+  }
+  return serving::CheckServing<GaitLine>(config.serving, MakeGaitLine(config));
+}
+
+Config Reloaded(const Config& before, const Config& wanted,
+                const std::vector<std::string>& changed_files,
+                const std::function<void(const std::string& line)>& say) {
+  Config old_config = before, new_config = wanted, next = before;
+  next.serving.sessions = wanted.serving.sessions;
+  next.serving.access.token_file = wanted.serving.access.token_file;
+  next.serving.access.view_token_file = wanted.serving.access.view_token_file;
+  next.serving.access.clients_file = wanted.serving.access.clients_file;
+  config::Binder old_binder, new_binder, next_binder;
+  old_config.Bind(old_binder);
+  new_config.Bind(new_binder);
+  next.Bind(next_binder);
+  for (const auto& line :
+       config::DescribeReload(old_binder, next_binder, new_binder, changed_files)) {
+    say(line);
+  }
+  return next;
 }
 
 }  // namespace footing::footing_sim

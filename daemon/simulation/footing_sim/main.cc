@@ -9,11 +9,8 @@
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
 #include "common/runtime/service_manager.h"
-#include "common/runtime/service_signals.h"
 #include "common/runtime/timer.h"
 #include "daemon/simulation/footing_sim/command_line.h"
-#include "daemon/simulation/footing_sim/reload.h"
-#include "daemon/simulation/footing_sim/service.h"
 
 int main(int argc, char** argv) {
   using namespace footing;  // NOLINT: main is wiring

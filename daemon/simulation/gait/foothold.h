@@ -2,7 +2,8 @@
 
 #include <optional>
 
-#include "daemon/simulation/gait/context.h"
+#include "daemon/simulation/gait/controller.h"
+#include "daemon/simulation/gait/targets.h"
 
 /// Where to put the next foot: equations (1) and (2) of the gait paper.
 ///
@@ -43,5 +44,41 @@ Eigen::Vector3d HipToFoot(const biped::BodyState& body, int leg,
 /// `aside_rad`, foot to the left positive.
 Eigen::Vector3d Mirrored(double heading_rad, const Eigen::Vector3d& other_r_HF_W_m, double length_m,
                          double aside_rad);
+
+/// At every touchdown: turns the heading by the commanded increment, counts the step, and corrects
+/// the gait's foothold by the speed error over the step just made, once the command has settled.
+/// (Integrating while the speed is still changing winds up and ends in vaulting.)
+void CountStep(const Context& context, GaitMemory& memory);
+
+/// Keeps a run's idle leg out of the other one: where they would be less than
+/// CurveGains::leg_gap_m apart sideways, and no further fore and aft, its target turns outwards,
+/// in a curve from a little before they pass each other.
+/// After a push to the side the idle leg's swing takes up what would turn the body over, and goes
+/// first.
+void KeepLegsApart(const Context& context, const GaitMemory& memory, Targets& targets);
+
+/// How far outside of the supporting foot a walk's swing foot is put that would balance the body
+/// `outward_m` outside: at least the gap, until balance asks for a foothold beyond the other foot's
+/// line. From there on it crosses, and from a gap beyond it on it lands where balance asks. What a
+/// foothold is kept outside, the next one makes good.
+double SideStep(double outward_m, double gap_m);
+
+/// What shows of a command before physics can follow it: "a visible anticipation at once". Both are
+/// set-points of servos that run anyway, small enough not to disturb the balance.
+/// Pitch of the body, rad, forward positive, for the speed that v_d has still to gain.
+double AnticipatedLean(const Context& context, const GaitMemory& memory);
+
+/// How much lower the hips of a walk go, m, that waits for its Fall to jump.
+double AnticipatedCrouch(const Context& context, const GaitMemory& memory);
+
+/// Steps at the user's own rate, as far as a gait stays robust: subjects of the paper missed "a
+/// tight coupling between running speed and stepping speed". A command without cadence leaves each
+/// gait its own.
+/// Rise and Fall of the present step, s. Equation (1) follows it, so the speed stays.
+double SwingTime(const Context& context, const GaitMemory& memory);
+/// The same for the step that begins, by the command.
+double CommandedSwingTime(const Context& context);
+/// Vertical speed of a run's lift-off, m/s: flight takes the step's time less the support's.
+double RunLiftOffSpeed(const Context& context, const GaitMemory& memory);
 
 }  // namespace footing::gait

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "daemon/simulation/gait/pit_plan.h"
-#include "daemon/simulation/gait/walk_plan.h"
+#include "daemon/simulation/gait/pits.h"
 
 /// Every number of the controllers, with its unit in its name, and its default. What differs from
 /// gait to gait, or between slow and fast, is in the tables of daemon/simulation/data/gaits

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemon/simulation/gait/context.h"
+#include "daemon/simulation/gait/controller.h"
 #include "daemon/simulation/gait/targets.h"
 
 namespace footing::gait {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemon/simulation/gait_service/frame.h"
+#include "daemon/simulation/gait_service/publish.h"
 #include "footing/v1/character.pb.h"
 
 namespace footing::gait_service {

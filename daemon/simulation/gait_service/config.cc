@@ -1,6 +1,12 @@
 #include "daemon/simulation/gait_service/config.h"
 
+#include <utility>
+
+#include "common/model/model.h"
+#include "common/runtime/files.h"
 #include "common/stream/leg_turn.h"
+#include "daemon/simulation/biped/track.h"
+#include "daemon/simulation/serving/simulation_thread.h"
 
 namespace footing::gait_service {
 
@@ -51,4 +57,105 @@ mapping::InterfaceOptions OptionsOf(const Config& config) {
           .boards_may_be_left = config.boards_may_be_left};
 }
 
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string HashOf(const std::string& text) { return model::Hex(model::Sha256(text)); }
+
+}  // namespace
+
+EffectiveConfig::EffectiveConfig(const serving::Config& common, const Config& config,
+                                 const engine::EngineTexts& texts,
+                                 const engine::EngineConfig& engine) {
+  json_ = serving::EffectiveSettings(common, "gait", config);
+  json_["step_s"] = engine.step_s;
+  json_["sha256"] = {{engine::kBipedFile, HashOf(texts.biped)}};
+  for (const engine::GainText& gains : texts.gains) {
+    json_["sha256"][gains.origin] = HashOf(gains.text);
+  }
+  SetInterface(0, engine.interface, texts.mapping,
+               config.mapping_table.empty() ? kBuiltInTable : config.mapping_table);
+}
+
+void EffectiveConfig::SetInterface(std::uint64_t number, const mapping::InterfaceOptions& options,
+                                   const std::string& table, const std::string& table_by) {
+  const ordered_json values = ordered_json::parse(table, nullptr, false, true);
+  const bool table_rolls =
+      options.interface == stream::UserInterface::kLeg && values.value("camera_roll", false);
+  json_["interface"] = {{"number", number},
+                        {"name", stream::Name(options.interface)},
+                        {"turn_by", stream::Name(options.leg.turn_by)},
+                        {"camera_roll", options.leg.camera_roll || table_rolls},
+                        {"boards_may_be_left", options.boards_may_be_left},
+                        {"table_by", table_by},
+                        {"table_sha256", HashOf(table)},
+                        {"table", values}};
+}
+
+v1::EffectiveConfig EffectiveConfig::Message() const {
+  v1::EffectiveConfig message;
+  message.set_json(json_.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+  return message;
+}
+
+std::string TableIn(const v1::EffectiveConfig& message, std::uint64_t interface_number) {
+  const ordered_json json = ordered_json::parse(message.json(), nullptr, false);
+  if (!json.is_object() || !json.contains("interface")) return "";
+  const ordered_json& interface = json["interface"];
+  if (!interface.is_object() || interface.value("number", ordered_json()) != interface_number ||
+      !interface.contains("table")) {
+    return "";
+  }
+  return interface["table"].dump();
+}
+
 }  // namespace footing::gait_service
+
+namespace footing::engine_files {
+
+Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
+  engine::EngineTexts texts;
+  auto biped = config::ReadDataFile(engine::kBipedFile, wish.data_folder);
+  if (!biped) return biped.error();
+  auto mapping_table =
+      wish.mapping_table.empty()
+          ? config::ReadDataFile(mapping::MappingFileOf(wish.interface), wish.data_folder)
+          : config::ReadTextFile(wish.mapping_table);
+  if (!mapping_table) return mapping_table.error();
+  auto track = config::ReadNamedOrPath(wish.track, "tracks", wish.data_folder);
+  if (!track) return track.error();
+  // The engine does not know the names of the files.
+  if (const auto parsed = terrain::ParseTrack(*track, wish.track); !parsed) return parsed.error();
+  if (!wish.mapping_table.empty()) {
+    const auto mapped =
+        mapping::AnyInterface::Create({.interface = wish.interface}, *mapping_table);
+    if (!mapped) {
+      return Error{mapped.error().kind,
+                   wish.mapping_table + ", in place of " + mapped.error().message};
+    }
+  }
+  texts.biped = std::move(*biped);
+  texts.mapping = std::move(*mapping_table);
+  texts.track = std::move(*track);
+  for (const char* name : engine::kGainFiles) {
+    auto gains = config::ReadDataFile(name, wish.data_folder);
+    if (!gains) return gains.error();
+    texts.gains.push_back({name, std::move(*gains)});
+  }
+  for (const std::string& path : wish.more_gains) {
+    auto gains = config::ReadTextFile(path);
+    if (!gains) return gains.error();
+    texts.gains.push_back({path, std::move(*gains)});
+  }
+  return texts;
+}
+
+Result<mapping::AnyInterface> ReadInterface(const mapping::InterfaceOptions& options,
+                                            const std::string& data_folder) {
+  const auto table = config::ReadDataFile(mapping::MappingFileOf(options.interface), data_folder);
+  if (!table) return table.error();
+  return mapping::AnyInterface::Create(options, *table);
+}
+
+}  // namespace footing::engine_files

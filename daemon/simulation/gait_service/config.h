@@ -1,9 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "common/base/result.h"
 #include "common/runtime/config.h"
+#include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/mapping/any_interface.h"
+#include "daemon/simulation/serving/simulation_thread.h"
+#include "footing/v1/character.pb.h"
 
 namespace footing::gait_service {
 
@@ -32,4 +39,49 @@ stream::TurnSource LegTurnSource(int number);
 /// The interface that a checked config asks for.
 mapping::InterfaceOptions OptionsOf(const Config& config);
 
+/// What the gait engine really runs with, as the channel "config" publishes it: so that a recording
+/// can be understood when program, tables and gains have changed. docs/protocol.md lists its keys.
+class EffectiveConfig {
+ public:
+  EffectiveConfig(const serving::Config& common, const Config& config,
+                  const engine::EngineTexts& texts, const engine::EngineConfig& engine);
+
+  /// The interface in force, with the number of its change and the text of its table, which has
+  /// been read; `table_by` says who gave the table.
+  void SetInterface(std::uint64_t number, const mapping::InterfaceOptions& options,
+                    const std::string& table, const std::string& table_by);
+
+  v1::EffectiveConfig Message() const;
+
+ private:
+  nlohmann::ordered_json json_;
+};
+
+inline constexpr const char* kBuiltInTable = "built-in";
+
+/// The table of the interface of that number in the recorded messages of the channel; empty where
+/// they do not have it.
+std::string TableIn(const v1::EffectiveConfig& message, std::uint64_t interface_number);
+
 }  // namespace footing::gait_service
+
+namespace footing::engine_files {
+
+struct Wish {
+  std::string track = "plain";  ///< Name of a built-in track, or a path.
+  stream::UserInterface interface = stream::UserInterface::kWrist;
+  std::string mapping_table = "";  ///< Path of the interface's table; empty: the built-in one.
+  std::string data_folder = "";  ///< Where the built-in files are; empty: where FindDataFile looks.
+  /// Gain tables to read after the built-in ones; a later one replaces what an earlier one had for
+  /// its gaits.
+  std::vector<std::string> more_gains = {};
+};
+
+/// The texts of the files that the engine runs on. Fails with one line that names the file.
+Result<engine::EngineTexts> ReadTexts(const Wish& wish = {});
+
+/// An interface with its built-in table. Fails with one line that names the file.
+Result<mapping::AnyInterface> ReadInterface(const mapping::InterfaceOptions& options,
+                                            const std::string& data_folder = "");
+
+}  // namespace footing::engine_files

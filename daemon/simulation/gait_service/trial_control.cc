@@ -4,12 +4,12 @@
 #include <memory>
 #include <utility>
 
-#include "common/runtime/data_file.h"
+#include "common/runtime/files.h"
 #include "common/wire/wire.h"
-#include "daemon/simulation/gait_service/publish.h"
-#include "daemon/simulation/serving/messages.h"
 #include "daemon/simulation/biped/track.h"
 #include "daemon/simulation/biped/trial.h"
+#include "daemon/simulation/gait_service/publish.h"
+#include "daemon/simulation/serving/messages.h"
 
 namespace footing::gait_service {
 namespace {

@@ -2,19 +2,29 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/runtime/exchange.h"
 #include "common/stream/character.h"
-#include "daemon/simulation/biped/parameters.h"
-#include "daemon/simulation/gait_service/failure_record.h"
-#include "daemon/simulation/gait_service/frame.h"
-#include "daemon/simulation/gait_service/track_exchange.h"
+#include "daemon/simulation/biped/model.h"
+#include "daemon/simulation/engine/state.h"
+#include "daemon/simulation/gait_service/publish.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/command.pb.h"
 
 namespace footing::gait_service {
+
+/// How tracks come to the simulation thread and go back: it never allocates or frees. A track takes
+/// effect with the first inputs that carry its number; it is queued before them.
+struct TrackExchange {
+  static constexpr std::size_t kMost = 4;  ///< On their way at one time.
+
+  exchange::BoundedQueue<std::unique_ptr<engine::TrackWorld>> next{kMost};
+  exchange::BoundedQueue<std::unique_ptr<engine::TrackWorld>> done{kMost};
+};
 
 /// Begins and ends trials for clients, on the io thread: reads and builds their tracks, knows their
 /// ids, and publishes what the engine says of them.

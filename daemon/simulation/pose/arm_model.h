@@ -1,14 +1,80 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
 #include <string>
 
-#include "common/model/model.h"
+#include <Eigen/Core>
+
 #include "common/base/result.h"
-#include "daemon/simulation/pose/arm_features.h"
-#include "daemon/simulation/pose/arm_geometry.h"
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/model/model.h"
+#include "daemon/simulation/pose/hand_attitude.h"
 
 namespace footing::arms {
+
+inline constexpr std::size_t kArms = 2;  ///< 0 is the left one.
+
+/// What two hands' states and their past say of an arm, for a linear regression. Everything is in
+/// W and is mirrored for the right arm, so that one regression serves both. The body faces along x.
+class ArmFeatures {
+ public:
+  static constexpr int kTurn = 9, kHistories = 3;
+  static constexpr int kOtherAt = kTurn + 12 + kTurn * kHistories;  ///< What the other hand says.
+  static constexpr int kOther = kTurn + 3;
+  static constexpr int kLinear = kOtherAt + kOther;
+  static constexpr int kProducts = kTurn * (kTurn + 1) / 2;
+  static constexpr int kCount = kLinear + kProducts;
+  using Values = Eigen::Matrix<double, kCount, 1>;
+
+  /// The next frame of both hands.
+  void Advance(const std::array<HandState, kArms>& hands, double step_s);
+  /// Of one arm, in the left arm's frame.
+  void Compute(std::size_t arm, Values& out) const;
+
+ private:
+  using Turn = Eigen::Matrix<double, kTurn, 1>;
+  struct Hand {
+    Turn turn = Turn::Zero();
+    Eigen::Vector3d turning = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero();
+    Eigen::Vector3d speed = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
+    std::array<Turn, kHistories> slow{Turn::Zero(), Turn::Zero(), Turn::Zero()};
+  };
+  bool started_ = false;
+  std::array<Hand, kArms> hands_;
+};
+
+/// A vector of the right arm as the left arm's, and back.
+inline Eigen::Vector3d MirroredWay(const Eigen::Vector3d& v) { return {v.x(), -v.y(), v.z()}; }
+
+/// How an arm is held, by unit vectors in W: three angles of the shoulder (`upper`, and `hinge`
+/// about it) and one of the elbow (between `upper` and `forearm`).
+struct ArmDirections {
+  Eigen::Vector3d upper = Eigen::Vector3d::UnitY();    ///< Shoulder to elbow.
+  Eigen::Vector3d hinge = Eigen::Vector3d::UnitZ();    ///< Of the upper arm: up in the T-pose.
+  Eigen::Vector3d forearm = Eigen::Vector3d::UnitY();  ///< Elbow to the middle of the fist.
+};
+
+/// One arm of a body, of side 0 (left) or 1.
+struct ArmGeometry {
+  int shoulder = 0, elbow = 0;
+  body::Point fist;
+  Eigen::Vector3d hinge_J = Eigen::Vector3d::UnitZ();  ///< In the shoulder's frame.
+  double upper_m = 0, forearm_m = 0;                   ///< Of the T-pose.
+
+  ArmGeometry(const body::Body& body, int side);
+
+  ArmDirections Directions(const body::Kinematics& at) const;
+  /// From the shoulder to the fist, W.
+  Eigen::Vector3d Hand(const ArmDirections& arm) const {
+    return upper_m * arm.upper + forearm_m * arm.forearm;
+  }
+};
+
+/// Angle by which one upper arm is turned against the other, and the difference of the elbows'
+/// angles, rad.
+double ShoulderError(const ArmDirections& a, const ArmDirections& b);
+double ElbowError(const ArmDirections& a, const ArmDirections& b);
 
 /// Of ArmDirections: upper, hinge, forearm.
 inline constexpr int kDirections = 9;

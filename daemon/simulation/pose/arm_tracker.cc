@@ -2,7 +2,102 @@
 
 #include <numbers>
 
+#include <Eigen/Dense>
+
 namespace footing::arms {
+namespace {
+
+constexpr double kUnmeasuredVariance = 1e6;
+/// Along a direction: what is of second order in its errors, and that bones are not straight.
+constexpr double kLeastSd = 0.02;
+
+double Squared(double x) { return x * x; }
+
+/// Of a direction that was `rest_W` in the T-pose, turned as the device has turned.
+Eigen::Matrix3d TurnedCovariance(const HandState& state, const Eigen::Vector3d& rest_W) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d now_W = state.turn_W * rest_W;
+  // About the vertical by the drift of the heading; by a strap that points wrong the axis of the
+  // turn is wrong, which shows nothing in the T-pose.
+  const Eigen::Vector3d by_drift = up.cross(now_W);
+  const Eigen::Vector3d by_strap = by_drift - state.turn_W * up.cross(rest_W);
+  return Squared(state.heading_sd_rad) * by_drift * by_drift.transpose() +
+         Squared(kStrapHeadingSdRad) * by_strap * by_strap.transpose() +
+         Squared(state.inclination_sd_rad) *
+             (Eigen::Matrix3d::Identity() - now_W * now_W.transpose());
+}
+
+/// What the devices measure; of what none does the variance is kUnmeasuredVariance.
+ArmBelief Measured(std::size_t arm, const SegmentStates& segments) {
+  ArmBelief measured;
+  measured.covariance *= kUnmeasuredVariance;
+  const Eigen::Vector3d outwards = Eigen::Vector3d(0, arm == 0 ? 1 : -1, 0);
+  const auto add = [&measured](Eigen::Index first, const HandState& state,
+                               const Eigen::Vector3d& rest_W, double more_rad) {
+    const Eigen::Vector3d now_W = state.turn_W * rest_W;
+    measured.directions.segment<3>(first) = now_W;
+    measured.covariance.block<3, 3>(first, first) =
+        TurnedCovariance(state, rest_W) +
+        Squared(more_rad) * (Eigen::Matrix3d::Identity() - now_W * now_W.transpose()) +
+        Squared(kLeastSd) * Eigen::Matrix3d::Identity();
+  };
+  const HandState& upper = segments[static_cast<std::size_t>(Segment::kUpperArm)];
+  const HandState& forearm = segments[static_cast<std::size_t>(Segment::kForearm)];
+  if (upper.valid) {
+    add(0, upper, outwards, 0);
+    add(3, upper, Eigen::Vector3d::UnitZ(), 0);
+  }
+  if (forearm.valid) add(6, forearm, outwards, kWristSdRad);
+  return measured;
+}
+
+}  // namespace
+
+ArmBelief RegressedArm(std::size_t arm, const ArmModel& model, const Directions& predicted,
+                       const HandState& hand) {
+  ArmBelief belief;
+  const ArmDirections left = Of(predicted);
+  belief.directions = Stacked(arm == 1 ? Mirrored(left) : left);
+  Directions mirror = Directions::Ones();
+  if (arm == 1) mirror(1) = mirror(4) = mirror(7) = -1;
+  belief.covariance = mirror.asDiagonal() * model.covariance * mirror.asDiagonal();
+  Directions by_heading;
+  for (Eigen::Index first = 0; first < kDirections; first += 3) {
+    const Eigen::Vector3d direction = belief.directions.segment<3>(first);
+    by_heading.segment<3>(first) = Eigen::Vector3d::UnitZ().cross(direction);
+    belief.covariance.block<3, 3>(first, first) +=
+        Squared(hand.inclination_sd_rad) *
+        (Eigen::Matrix3d::Identity() - direction * direction.transpose());
+  }
+  belief.covariance += Squared(hand.heading_sd_rad) * by_heading * by_heading.transpose();
+  return belief;
+}
+
+void Measure(std::size_t arm, const SegmentStates& segments, ArmBelief& belief) {
+  if (!segments[0].valid && !segments[1].valid) return;
+  const ArmBelief measured = Measured(arm, segments);
+  const Eigen::Matrix<double, kDirections, kDirections> gain =
+      belief.covariance * (belief.covariance + measured.covariance)
+                              .llt()
+                              .solve(Eigen::Matrix<double, kDirections, kDirections>::Identity());
+  belief.directions += gain * (measured.directions - belief.directions);
+  belief.covariance -= (gain * belief.covariance).eval();
+}
+
+ArmBelief StrappedArm(std::size_t arm, const SegmentStates& segments) {
+  return Measured(arm, segments);
+}
+
+ArmEstimate ToEstimate(const ArmBelief& belief) {
+  ArmEstimate estimate;
+  estimate.directions = Of(belief.directions);
+  const Directions sd = belief.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  estimate.upper_sd = sd.segment<3>(0);
+  estimate.hinge_sd = sd.segment<3>(3);
+  estimate.forearm_sd = sd.segment<3>(6);
+  return estimate;
+}
+
 namespace {
 
 /// Before any reading. A strapped device points along the arm, which a T-pose has to its side.

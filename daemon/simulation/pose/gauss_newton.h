@@ -4,12 +4,87 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "daemon/simulation/pose/basis.h"
-#include "daemon/simulation/pose/measured_terms.h"
-#include "daemon/simulation/pose/pose_update.h"
 #include "daemon/simulation/pose/targets.h"
 
+/// The pose solver: hands, feet, centre of mass and momentum in, a full-body pose out (Ha, Bai and
+/// Liu 2011, section 6, and what goes beyond it: docs/pose.md).
+///
+/// | paper            | here           | unit, frame                        |
+/// |------------------|----------------|------------------------------------|
+/// | q                | q              | m and rad, common/body             |
+/// | P, by c          | com_W_m        | m, W                               |
+/// | L                | angular_W      | kg m^2/s about the centre of mass  |
+/// | G                | points         | m, W                               |
+/// | principal compon.| PoseBasis      | q = mean + modes a                 |
 namespace footing::pose {
+
+/// Principal components of poses, in the order of their variance.
+struct PoseBasis {
+  Eigen::VectorXd mean;     ///< A pose.
+  Eigen::MatrixXd modes;    ///< A column a component; q = mean + modes a.
+  Eigen::MatrixXd inverse;  ///< a = inverse (q - mean), for poses of the space.
+  Eigen::VectorXd sd;       ///< Of each coefficient.
+
+  int dof() const { return static_cast<int>(mean.size()); }
+  int size() const { return static_cast<int>(sd.size()); }
+};
+
+struct BasisOptions {
+  /// A metre of the root counts as so many radians.
+  double translation_weight = 2.5;
+  /// As many components as explain this share of the variance; 1: all that vary at all.
+  double variance_share = 1;
+};
+
+/// Principal component analysis of poses, a column each. At least two poses.
+PoseBasis FitBasis(const Eigen::Ref<const Eigen::MatrixXd>& poses, const BasisOptions& options);
+
+/// The same poses of a person whose root is so many times as high: angles stay.
+PoseBasis Resized(PoseBasis basis, double scale);
+/// The components that hold this share of the variance.
+PoseBasis Leading(PoseBasis basis, double share);
+/// No basis: every degree of freedom for itself, with its own spread.
+PoseBasis Unconnected(const PoseBasis& basis);
+
+/// How measured terms move a pose of a Gaussian prior. There are fewer rows than coefficients, so
+/// steps are solved for among the rows (Woodbury 1950), and with the covariance of poses instead of
+/// coefficients: a row depends on the few degrees of freedom that move its joint, but on every
+/// coefficient.
+///
+/// | symbol | here                                                                            |
+/// |--------|---------------------------------------------------------------------------------|
+/// | P      | covariance of q by the basis, over `weight`: of the prior, smoothness and damping |
+/// | H, r   | MeasuredTerms: derivatives and residuals                                          |
+/// | S      | 1 + H P H'                                                                        |
+///
+/// Sums run in a fixed order, so a frame has the same bits whatever the processor adds side by
+/// side. Nothing allocates after the constructor.
+class PoseUpdate {
+ public:
+  explicit PoseUpdate(const PoseBasis& basis);
+
+  /// Takes H, at the derivatives of `terms`.
+  void SetTerms(const MeasuredTerms& terms);
+  /// The Cholesky factor of S for this weight.
+  void Factorise(double weight);
+  /// q - offset + P H' S^-1 (r + H offset), with `offset` from the prior's centre to q.
+  void Correct(const MeasuredTerms& terms, const Eigen::VectorXd& offset, Eigen::VectorXd& q);
+  /// Variances that the terms leave of three lengths that depend on q as the block says.
+  Eigen::Vector3d OpenVariances(const JacobianBlock& block);
+
+ private:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  int dof_ = 0;
+  int row_count_ = 0;
+  double weight_ = 1;
+  Rows P_;     ///< Before it is divided by the weight; rows are padded with zeros to whole strips.
+  Rows PHt_;   ///< P_ H': dof x rows.
+  Rows HPHt_;  ///< Its lower triangle.
+  Rows S_;     ///< Its lower triangle becomes its Cholesky factor.
+  Rows open_PHt_, open_HPHt_;
+  Eigen::VectorXd innovation_;
+};
 
 struct GaussNewtonOptions {
   int iterations = 3;
@@ -79,6 +154,54 @@ class GaussNewton {
   Eigen::VectorXd centre_;    ///< Where mean and smoothness alone would have q.
   Eigen::VectorXd offset_q_;  ///< Of q from the centre or the mean, or a part of that.
   Eigen::VectorXd whitened_;
+};
+
+struct FibonacciOptions {
+  int evaluations = 8;  ///< Of equation (6) a component: 1/34 of the interval is found.
+  int sweeps = 1;
+  int first_sweeps = 6;  ///< Of the first frame, each over the whole range.
+  /// A later frame searches so many standard deviations to each side of the last coefficient.
+  double span = 0.3;
+  /// No coefficient is searched further from 0, in its standard deviations: 95 of 100 poses are
+  /// within. Where twice as much was allowed, coefficients that little holds wandered to where no
+  /// pose is and stayed there, since each search begins from the last (docs/evaluation/pose.md).
+  double reach = 2;
+  double frame_s = 1.0 / 60;
+};
+
+/// The paper's solver (section 6): a one-dimensional Fibonacci search along each principal
+/// component, in the order of importance, over equation (6). The paper does not say how its terms
+/// of different units are weighed; here each is divided by its standard deviation.
+///
+/// Nothing allocates after the constructor.
+class FibonacciSearch {
+ public:
+  /// `body` and `basis` must outlive it and have equal degrees of freedom.
+  FibonacciSearch(const body::Body& body, const PoseBasis& basis, const FibonacciOptions& options);
+
+  void Solve(const PoseTargets& targets);
+  /// The next frame starts at the mean.
+  void Reset() { started_ = false; }
+
+  const Eigen::VectorXd& q() const { return q_; }
+  const Eigen::VectorXd& coefficients() const { return a_; }
+  /// Equation (6) at the last solution.
+  double cost() const { return cost_; }
+
+ private:
+  double Cost(const PoseTargets& targets);
+  /// Equation (6) with coefficient `component` at `value`, the others as they are.
+  double CostAt(const PoseTargets& targets, int component, double value);
+  void Search(const PoseTargets& targets, int component, double lower, double upper);
+
+  const body::Body* body_;
+  const PoseBasis* basis_;
+  FibonacciOptions options_;
+  bool started_ = false;
+  double cost_ = 0;
+  Eigen::VectorXd a_, q_, q_before_, rate_, without_;
+  body::Kinematics at_;
+  body::JointVelocities velocities_;
 };
 
 }  // namespace footing::pose

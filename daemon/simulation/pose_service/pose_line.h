@@ -6,19 +6,32 @@
 #include <string>
 #include <vector>
 
-#include "common/body/body.h"
-#include "common/net/lease_control.h"
 #include "common/base/result.h"
+#include "common/body/body.h"
+#include "common/net/lease.h"
 #include "common/net/server.h"
-#include "daemon/simulation/pose_service/config.h"
-#include "daemon/simulation/pose_service/pose_events.h"
+#include "common/runtime/config.h"
 #include "daemon/simulation/pose_service/pose_run.h"
 #include "daemon/simulation/pose_service/pose_sensors.h"
-#include "daemon/simulation/pose_service/subject_body.h"
-#include "daemon/simulation/serving/config.h"
+#include "daemon/simulation/pose_service/publish.h"
+#include "daemon/simulation/reconstruction/models.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
 #include "daemon/simulation/serving/simulation_thread.h"
+#include "footing/v1/character.pb.h"
 
 namespace footing::pose_service {
+
+/// Settings of the pose engine's service.
+struct Config {
+  std::string subject;        ///< Subject file; empty: nobody has been named.
+  std::string mode = "best";  ///< "best" or "paper".
+  std::int64_t lag_ms = 0;    ///< 0, 100 or 200.
+
+  void Bind(config::Binder& binder);
+};
+
+/// Usage error that lists what there is when mode or lag is none of them.
+Result<void> Check(const Config& config);
 
 /// The io side of the pose engine: board cells and hands in, a reconstructed person out (see
 /// Service).
@@ -74,5 +87,22 @@ class PoseLine {
   PoseEvents events_;
   lease::LeaseControl lease_{"footing-sim"};
 };
+
+inline constexpr const char* kPoseFile = "pose.fmodel";
+inline constexpr const char* kComFile = "com.fmodel";
+inline constexpr const char* kArmFile = "arm.fmodel";
+
+/// The models of the pose engine, from `data_folder` (empty: the installed one): the prior of
+/// poses, and in the paper's mode the networks of the horizontal COM. One that is missing is an
+/// error that names it: nothing else takes its place. Only the arms' model may be missing; Wiimotes
+/// are not followed then, and said so.
+Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
+                                              reconstruction::Mode mode);
+
+/// The inputs of the pose engine as they took effect, for recordings.
+v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject);
+/// The other way round, for replays.
+PoseApplied PoseAppliedFrom(const v1::AppliedInput& message);
+Subject SubjectFrom(const v1::AppliedInput& message);
 
 }  // namespace footing::pose_service

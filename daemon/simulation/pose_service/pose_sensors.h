@@ -1,19 +1,126 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
-#include "common/runtime/latest.h"
-#include "daemon/simulation/pose_service/pose_arms.h"
-#include "daemon/simulation/pose_service/pose_frame.h"
-#include "daemon/simulation/pose_service/tracked_hand.h"
-#include "daemon/simulation/reconstruction/hand_track.h"
+#include "common/runtime/exchange.h"
+#include "daemon/simulation/pose/arm_tracker.h"
+#include "daemon/simulation/pose/inertial_track.h"
+#include "daemon/simulation/pose_service/publish.h"
+#include "daemon/simulation/reconstruction/subject_model.h"
 #include "footing/v1/command.pb.h"
+#include "footing/v1/sensor.pb.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::pose_service {
+
+/// How both arms are held by what the Wiimotes in the fists, or strapped on upper arms and
+/// forearms, measure (docs/hands.md), on the io thread: the same arms::ArmTracker that footing-eval
+/// runs. A Wiimote in a fist points forward with its buttons up in the T-pose, a strapped one along
+/// the arm to the hand.
+///
+/// The gyroscope's own bias of the T-pose is taken off, not what footingd holds for it: a hand that
+/// turns slowly and evenly looks like one at rest to footingd. A Wiimote that is not heard for
+/// longer than kTimeoutS may have turned anywhere: it counts for nothing until the next T-pose.
+class PoseArms {
+ public:
+  static constexpr double kTimeoutS = 0.2;
+
+  /// Without a model there is no estimate from the fists.
+  explicit PoseArms(std::optional<arms::ArmModel> model);
+
+  /// Whether the rig has a Wiimote there, and which device it is.
+  void Bind(std::size_t side, std::optional<std::uint32_t> device,
+            arms::Place place = arms::Place::kFist);
+  void Take(const v1::MotionSample& sample, std::int64_t now_ns);
+  /// What the engine says of its T-pose.
+  void Follow(bool calibrated, double calibration_progress);
+  /// Puts the arms and what is wrong with them into the inputs; times go forward.
+  void Report(std::int64_t now_ns, PoseInputs& inputs);
+
+ private:
+  struct Device {
+    std::optional<std::uint32_t> device;
+    bool seen = false, turns = false;  ///< A sample has come; one with an angular velocity.
+    std::int64_t seen_ns = 0, turned_ns = 0;
+    std::int64_t sampled_ns = 0;  ///< Of the last one with an angular velocity.
+    bool simulated = false;
+  };
+  void Take(const v1::MotionSample& sample, std::int64_t now_ns, std::size_t side,
+            std::size_t place);
+  HandTrouble TroubleOf(std::size_t side, std::size_t place, std::int64_t now_ns) const;
+  /// Of the devices that the arm has.
+  HandTrouble TroubleOf(std::size_t side, std::int64_t now_ns) const;
+
+  std::optional<arms::ArmModel> model_;
+  arms::ArmTracker tracker_;
+  std::array<std::array<Device, arms::kPlaces>, arms::kArms> devices_{};  ///< By arms::Place.
+  bool calibrated_ = false;
+  double progress_ = 0;
+  std::int64_t reported_ns_ = 0;
+};
+
+/// A point that is not heard of for longer counts as not seen.
+inline constexpr double kPointTimeoutS = 0.15;
+
+/// A tracked point with the deviations that count: no point is known better than to 2 mm, and its
+/// information is the tracker's times its confidence, which a light at the sensor's limit lowers.
+struct CountedPoint {
+  Eigen::Vector3d p_W_m, sd_m, covariance_m2;
+  Eigen::Matrix3d matrix_m2;  ///< The same covariance without that limit.
+
+  explicit CountedPoint(const v1::HandSample& sample);
+};
+
+/// Whether the sample is of a point that was seen and whose place is in W: a tracker without
+/// calibration reports places in its own frame.
+bool IsSeenInWorld(const v1::HandSample& sample);
+
+/// One hand as several trackers see it: a HandTrack for each of them, fused by their covariances.
+/// Where they contradict each other the fused covariance grows with the contradiction (Birge's
+/// ratio). At most kMostTrackers at once; another one replaces the one that was heard longest ago.
+/// What the camera sees of a PS Move's sphere is joined to the Move's own readings
+/// (inertial::Track) while there are any. A value.
+class TrackedHand {
+ public:
+  static constexpr std::size_t kMostTrackers = 4;
+
+  /// The PS Move in this hand, if there is one. Another one starts again.
+  void Bind(std::optional<std::uint32_t> move);
+  /// Nothing but for samples of that Move that have units.
+  void Feel(const v1::MotionSample& sample);
+
+  /// A sample by IsSeenInWorld, exposed then.
+  void Add(const v1::HandSample& sample, double exposed_s, std::int64_t now_ns);
+
+  struct Fused {
+    reconstruction::HandInput hand;  ///< Invalid where no tracker has it.
+    bool simulated = false;          ///< One of its trackers is.
+    std::set<std::string> trackers;  ///< Their names.
+  };
+  /// Of the trackers that have seen it lately. `host_ns`: the same instant by the clock of the
+  /// samples' own times.
+  Fused At(std::int64_t now_ns, std::int64_t host_ns = 0) const;
+
+ private:
+  struct Source {
+    std::string tracker;
+    bool used = false, simulated = false;
+    std::int64_t seen_ns = 0;
+    reconstruction::HandTrack track;
+  };
+  Source& SourceOf(const std::string& tracker);
+  /// By the Move's readings and what that source sees of it. Invalid without either.
+  reconstruction::HandInput Inertial(const Source& source, std::int64_t host_ns) const;
+
+  std::array<Source, kMostTrackers> sources_;
+  std::optional<std::uint32_t> move_;
+  std::optional<inertial::Track> inertial_;  ///< From the Move's first sample on.
+};
 
 /// Turns ticks of the sensor daemon into inputs of the pose engine, on the io thread: the newest
 /// raw sample of the rig's left and right board with its cells' places in W and what they have felt

@@ -5,14 +5,95 @@
 #include <string>
 #include <vector>
 
-#include "common/model/model.h"
+#include <Eigen/Core>
+
 #include "common/base/result.h"
-#include "daemon/simulation/pose/arm_model.h"
+#include "common/model/model.h"
 #include "daemon/simulation/cascade/network.h"
-#include "daemon/simulation/pose/basis.h"
-#include "daemon/simulation/reconstruction/features.h"
+#include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/gauss_newton.h"
 
 namespace footing::reconstruction {
+
+/// What one frame's hands, feet and momentum say of a pose, for a linear regression: places from
+/// the estimated centre of mass, their products, and how they differ from what they were. Lengths
+/// are parts of the height of the root in the T-pose, so that persons of all sizes are alike, and
+/// nothing depends on where they are in the world.
+class Features {
+ public:
+  static constexpr int kHistories = 3;
+  static constexpr int kNow = 37, kChanging = 17, kShape = 7;
+  static constexpr int kCount = kNow + kHistories * kChanging + kShape * (kShape + 1) / 2;
+  using Values = Eigen::Matrix<double, kCount, 1>;
+
+  Features(double step_s, double root_height_m, double mass_kg)
+      : step_s_(step_s), root_height_m_(root_height_m), mass_kg_(mass_kg) {}
+
+  /// The next frame: fists in W, left and right.
+  const Values& Advance(const std::array<Eigen::Vector3d, 2>& hands_W_m,
+                        const momentum::Estimate& estimate);
+  const Values& values() const { return values_; }
+
+ private:
+  using Changing = Eigen::Matrix<double, kChanging, 1>;
+
+  double step_s_, root_height_m_, mass_kg_;
+  bool started_ = false;
+  using Hands = Eigen::Matrix<double, 6, 1>;
+  Hands hands_ = Hands::Zero(), slow_hands_ = Hands::Zero();
+  std::array<Changing, kHistories> slow_{Changing::Zero(), Changing::Zero(), Changing::Zero()};
+  Values values_ = Values::Zero();
+};
+
+/// The same instant as hands and feet alone show it: the centre of mass over the middle of the
+/// feet, `com_height_m` high, without motion, no loads. Where the feet are and that they stand
+/// stays.
+momentum::Estimate WithoutLoads(const momentum::Estimate& estimate, double com_height_m);
+
+/// A matrix in single precision that is read once a frame from first to last: strips of kStrip
+/// rows, each a column after the other in memory. Its products are summed in the order of the
+/// columns.
+class StripMatrix {
+ public:
+  static constexpr int kStrip = 32;
+
+  StripMatrix() = default;
+  explicit StripMatrix(const Eigen::MatrixXf& dense);
+
+  Eigen::Index rows() const { return rows_; }
+  /// Of a vector of products, whole strips.
+  Eigen::Index StripRows() const { return (rows_ + kStrip - 1) / kStrip * kStrip; }
+  Eigen::MatrixXf Dense() const;
+  /// y += matrix x; y has StripRows() rows, those beyond rows() stay.
+  void AddProduct(const Eigen::VectorXf& x, Eigen::VectorXf& y) const;
+
+ private:
+  Eigen::Index rows_ = 0, cols_ = 0;
+  Eigen::MatrixXf strips_;
+};
+
+/// A linear map from features to a pose: the root from the estimated centre of mass in parts of the
+/// root's height, then the angles. Where it has waves, it is linear in random cosines of the
+/// features, too (Rahimi & Recht 2007).
+struct PoseRegression {
+  Eigen::VectorXd mean, scale;  ///< Of the features: (f - mean) scale, cut at +-4.
+  Eigen::MatrixXd weights;      ///< dof x features.
+  Eigen::VectorXd offset;       ///< dof.
+  StripMatrix waves;            ///< waves x features: cos(waves f + phases).
+  Eigen::VectorXf phases;
+  StripMatrix wave_weights;  ///< dof x waves.
+
+  /// What Predict computes in, allocated once.
+  struct Workspace {
+    Eigen::VectorXd scaled;
+    Eigen::VectorXf single, waved, part;
+  };
+  Workspace MakeWorkspace() const;
+  bool empty() const { return offset.size() == 0; }
+  /// Writes the pose to `q`, of its size.
+  void Predict(const Features::Values& features, Workspace& workspace, Eigen::VectorXd& q) const;
+};
 
 /// A model with the name of the file that it comes from.
 struct NamedModel {

@@ -3,9 +3,299 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/body/kinematics.h"
 #include "daemon/simulation/reconstruction/report.h"
+#include "daemon/simulation/reconstruction/subject_model.h"
 
 namespace footing::reconstruction {
+namespace {
+
+constexpr double kMostHandM = 10;  // No part of a person is further from the cells.
+
+bool IsUsable(const PointInput& point, const Eigen::Vector3d& origin_m) {
+  return point.valid && point.p_W_m.allFinite() && point.sd_m.allFinite() &&
+         point.covariance_m2.allFinite() && point.sd_m.minCoeff() > 0 &&
+         (point.p_W_m - origin_m).norm() < kMostHandM;
+}
+
+bool UsableDirection(const Eigen::Vector3d& direction, const Eigen::Vector3d& sd) {
+  return direction.allFinite() && sd.allFinite() && sd.minCoeff() > 0;
+}
+
+}  // namespace
+
+bool Measurement::skeleton() const { return IsSkeleton(joints); }
+
+std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& hands,
+                                          const Eigen::Vector3d& origin_m) {
+  std::array<HandInput, kHands> usable = hands;
+  for (HandInput& hand : usable) hand.valid = IsUsable(hand, origin_m);
+  return usable;
+}
+
+JointInputs UsableJoints(const JointInputs& joints, const Eigen::Vector3d& origin_m) {
+  JointInputs usable = joints;
+  for (JointInput& joint : usable) joint.valid = IsUsable(joint, origin_m);
+  return usable;
+}
+
+std::array<arms::ArmEstimate, kHands> UsableArms(
+    const std::array<arms::ArmEstimate, kHands>& arms) {
+  std::array<arms::ArmEstimate, kHands> usable = arms;
+  for (arms::ArmEstimate& arm : usable) {
+    arm.valid = arm.valid && UsableDirection(arm.directions.upper, arm.upper_sd) &&
+                UsableDirection(arm.directions.hinge, arm.hinge_sd) &&
+                UsableDirection(arm.directions.forearm, arm.forearm_sd);
+  }
+  return usable;
+}
+
+arms::HandState UsableBelt(const arms::HandState& belt) {
+  constexpr double kRounding = 1e-3;
+  arms::HandState usable = belt;
+  const Eigen::Matrix3d square = belt.turn_W.transpose() * belt.turn_W;
+  usable.valid = belt.valid && square.isIdentity(kRounding) && belt.turn_W.determinant() > 0 &&
+                 std::isfinite(belt.heading_sd_rad) && std::isfinite(belt.inclination_sd_rad) &&
+                 belt.heading_sd_rad >= 0 && belt.inclination_sd_rad >= 0;
+  return usable;
+}
+
+void ReportTPose(const SubjectModel& model, const Options& options, Output& output) {
+  const auto joints = static_cast<std::size_t>(model.body.skeleton.size());
+  output.calibrated = false;
+  output.calibration_progress = 0;
+  output.valid = false;
+  output.lag_s = options.lag_steps() * options.step_s();
+  output.mass_kg = model.body.mass_kg;
+  output.momentum = {};
+  output.R_WJ.resize(joints);
+  output.p_WJ_m.resize(joints);
+  ReportPose(model.t_pose, model.t_pose_at, output);
+  output.com_W_m = body::CentreOfMass(model.body, model.t_pose_at);
+  output.com_variance_m2.setConstant(kUnknownSdM * kUnknownSdM);
+  output.joint_sd_m.assign(joints, kUnknownSdM);
+}
+
+bool Calibrate(const Inputs& inputs, double step_s, momentum::TPoseCalibration& calibration,
+               Output& output) {
+  const bool complete = calibration.Advance(inputs.loads, step_s);
+  output.calibration_progress = calibration.progress();
+  output.calibration_restarts = calibration.restarts();
+  if (!complete) return false;
+  output.mass_kg = calibration.result().mass_kg;
+  output.calibrated = true;
+  return true;
+}
+
+BestEstimate::BestEstimate(const SubjectModel& model, const Options& options)
+    : model_(&model),
+      options_(options),
+      likely_(model, options.step_s()),
+      plain_(model.body, model.basis, PostureSolverOptions(options)) {
+  if (!model.posture.empty()) {
+    learned_.emplace(model.body, model.posture.rest, PostureSolverOptions(options));
+  }
+}
+
+void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
+  momentum::BestConfig config;
+  config.lag_s = options_.lag_steps() * options_.step_s();
+  if (!model_->posture.empty()) config.height_posture = momentum::LearnedHeightPosture();
+  estimator_.emplace(config, model_->subject, pose, options_.step_s());
+  likely_.Start();
+  plain_.Reset();
+  if (learned_) learned_->Reset();
+  origin_m_ = origin_m;
+}
+
+Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& points) {
+  Measurement now{UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
+                  estimator_->Advance(inputs.loads), UsableJoints(inputs.joints, origin_m_),
+                  UsableBelt(inputs.belt)};
+  if (options_.use_posture && now.both_hands()) {
+    SeePosture(points, now);
+  }
+  return now;
+}
+
+void BestEstimate::SeePosture(const JointPoints& points, Measurement& now) {
+  likely_.Advance({now.hands[0].p_W_m, now.hands[1].p_W_m}, now.momentum);
+  targets_ = {};
+  AddHandTargets(*model_, now, options_.best, targets_);
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    AddFootTargets(model_->feet[f], now.momentum.feet[f], options_.best.foot, targets_);
+  }
+  MoveOrigin(origin_m_, targets_);
+  plain_.Solve(targets_);
+  const Eigen::Vector3d plain_m = body::CentreOfMass(model_->body, plain_.at());
+  now.posture_com_W_m = origin_m_ + plain_m;
+  if (learned_) {
+    AddExtraTargets(now, points);
+    learned_->Solve(targets_, likely_.Predict(origin_m_));
+    now.posture_com_W_m = origin_m_ + body::CentreOfMass(model_->body, learned_->at());
+  }
+  now.momentum = estimator_->SeePosture(origin_m_.y() + plain_m.y(), *now.posture_com_W_m);
+}
+
+void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& points) {
+  pose::PoseTargets extra;
+  if (!now.skeleton()) AddJointTargets(points, now.joints, extra);
+  AddBeltTargets(*model_, now.belt, options_.best, extra);
+  MoveOrigin(origin_m_, extra);
+  for (int i = 0; i < extra.count; ++i) targets_.Add(extra.points[static_cast<std::size_t>(i)]);
+}
+
+void PaperEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
+  estimator_.emplace(momentum::PaperConfig{}, model_->subject, pose, step_s_);
+  if (model_->horizontal) horizontal_.emplace(*model_->horizontal, pose, step_s_);
+  origin_m_ = origin_m;
+}
+
+Measurement PaperEstimate::Advance(const Inputs& inputs) {
+  std::optional<Eigen::Vector2d> com_m;
+  if (horizontal_) com_m = horizontal_->Advance(inputs.loads);
+  return {UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
+          estimator_->Advance(inputs.loads, com_m)};
+}
+
+ModeState::ModeState(const SubjectModel& subject_model, const Options& mode_options)
+    : model(&subject_model),
+      options(mode_options),
+      legs(subject_model),
+      pose{subject_model.t_pose, subject_model.t_pose_at} {}
+
+void ModeState::MoveTargets() {
+  MoveOrigin(origin_m, targets);
+  MoveOrigin(origin_m, shown_feet);
+}
+
+bool ModeState::MovePoseToWorld(Output& output) {
+  if (!pose.q.allFinite()) {
+    output.valid = false;
+    ++solver_resets;
+    return false;
+  }
+  MoveToWorld(origin_m, pose);
+  return true;
+}
+
+void SolutionReport::Start() {
+  misfit_.Start();
+  resets_ = 0;
+  spread_.Start();
+}
+
+void SolutionReport::Report(const ModeState& state, const Measurement& then,
+                            const PriorOfPose& prior, pose::GaussNewton& solver, Output& output) {
+  ReportPose(state.pose.q, state.pose.at, output);
+  if (then.momentum.resets != resets_) misfit_.Start();
+  resets_ = then.momentum.resets;
+  misfit_.Report(MisfitOf(*state.model, state.targets, state.origin_m, state.pose.at, prior),
+                 state.options.step_s(), output);
+  const double doubt = Doubt(output.misfit, then.momentum.trusted && !then.momentum.stepped);
+  spread_.Advance(solver);
+  spread_.Report(doubt, output);
+  ReportCom(then.momentum, output);
+  if (state.targets.has_com) {
+    ReportPoseHeight(*state.model, state.pose.at, spread_.com_height_sd_m(), doubt, output);
+  }
+}
+
+InsoleMode::InsoleMode(const SubjectModel& model, const Options& options)
+    : state_(model, options),
+      estimate_(model, options),
+      solver_(model.body, model.basis, BasisSolverOptions(options)),
+      report_(model, options.best) {}
+
+void InsoleMode::Start(const momentum::TPose& pose) {
+  state_.origin_m = BasisOrigin(*state_.model, pose);
+  estimate_.Start(pose, state_.origin_m);
+  solver_.Reset();
+  report_.Start();
+}
+
+void InsoleMode::Advance(const Inputs& inputs, const WalkPrior& prior, Output& output) {
+  const Measurement now = estimate_.Advance(inputs, state_.model->joints);
+  output.mass_kg = estimate_.mass_kg();
+  ReportEstimate(now.momentum, state_.solver_resets, output);
+  SetTargets(now, prior);
+  solver_.Solve(state_.targets);
+  state_.pose.q = solver_.q();
+  state_.pose.at = solver_.at();
+  if (state_.options.clean_up) state_.legs.SolveBoth(state_.shown_feet, state_.pose);
+  if (!state_.MovePoseToWorld(output)) {
+    solver_.Reset();
+    return;
+  }
+  Report(now, output);
+}
+
+void InsoleMode::SetTargets(const Measurement& now, const WalkPrior& prior) {
+  Clear(state_.targets);
+  AddHandTargets(*state_.model, now, state_.options.best, state_.targets);
+  AddFeetTargets(*state_.model, prior.feet, state_.targets);
+  ShowFeet(*state_.model, state_.targets, state_.shown_feet);
+  SetMomentumTargets(prior.com, state_.targets);
+  state_.MoveTargets();
+}
+
+void InsoleMode::Report(const Measurement& now, Output& output) {
+  const PriorOfPose prior{state_.model->basis, state_.options.best.prior_weight,
+                          state_.model->basis.mean, solver_.q()};
+  report_.Report(state_, now, prior, solver_, output);
+}
+
+namespace {
+
+pose::FibonacciOptions SearchOptions(const Options& options) {
+  pose::FibonacciOptions search;
+  search.frame_s = options.step_s();
+  return search;
+}
+
+}  // namespace
+
+PaperMode::PaperMode(const SubjectModel& model, const Options& options)
+    : state_(model, options),
+      estimate_(model, options),
+      solver_(model.body, model.basis, SearchOptions(options)) {}
+
+void PaperMode::Start(const momentum::TPose& pose) {
+  state_.origin_m = BasisOrigin(*state_.model, pose);
+  estimate_.Start(pose, state_.origin_m);
+  solver_.Reset();
+}
+
+void PaperMode::Advance(const Inputs& inputs, const Truth& truth, Output& output) {
+  const Measurement now = estimate_.Advance(inputs);
+  ReportEstimate(now.momentum, state_.solver_resets, output);
+  SetTargets(now, truth, output.mass_kg);
+  solver_.Solve(state_.targets);
+  state_.pose.q = solver_.q();
+  body::ComputeKinematics(state_.model->body.skeleton, state_.pose.q, state_.pose.at);
+  if (state_.options.clean_up) state_.legs.SolveBoth(state_.shown_feet, state_.pose);
+  if (!state_.MovePoseToWorld(output)) {
+    solver_.Reset();
+    return;
+  }
+  ReportPose(state_.pose.q, state_.pose.at, output);
+  ReportCom(now.momentum, output);
+}
+
+void PaperMode::SetTargets(const Measurement& now, const Truth& truth, double mass_kg) {
+  Clear(state_.targets);
+  AddPaperHandTargets(*state_.model, now, state_.targets);
+  if (truth.feet) {
+    AddFeetTargets(*state_.model, *truth.feet, state_.targets);
+  } else {
+    AddPaperFeetTargets(*state_.model, now, state_.targets);
+  }
+  ShowFeet(*state_.model, state_.targets, state_.shown_feet);
+  SetPaperMomentumTargets(*state_.model, now, mass_kg, state_.options, state_.targets);
+  OverrideMomentumTargets(truth, state_.options, state_.targets);
+  state_.MoveTargets();
+}
+
 namespace {
 
 constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;

@@ -3,15 +3,13 @@
 #include <memory>
 #include <variant>
 
-#include "common/body/body.h"
 #include "common/base/result.h"
+#include "common/body/body.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/reconstruction/best_mode.h"
-#include "daemon/simulation/reconstruction/inputs.h"
 #include "daemon/simulation/reconstruction/models.h"
-#include "daemon/simulation/reconstruction/options.h"
-#include "daemon/simulation/reconstruction/output.h"
-#include "daemon/simulation/reconstruction/paper_mode.h"
+#include "daemon/simulation/reconstruction/pose_targets.h"
+#include "daemon/simulation/reconstruction/report.h"
 #include "daemon/simulation/reconstruction/subject_model.h"
 
 /// From the cells under two feet and the places of two hands to the pose of the whole body (Ha, Bai

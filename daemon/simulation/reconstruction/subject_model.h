@@ -1,25 +1,183 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "common/base/result.h"
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/body/points.h"
-#include "common/base/result.h"
-#include "daemon/simulation/pose/arm_geometry.h"
+#include "common/body/skeleton_points.h"
+#include "common/stream/hands.h"
 #include "daemon/simulation/cascade/network.h"
 #include "daemon/simulation/momentum/calibration.h"
-#include "daemon/simulation/pose/leg_ik.h"
-#include "daemon/simulation/reconstruction/feet.h"
-#include "daemon/simulation/reconstruction/inputs.h"
+#include "daemon/simulation/momentum/contact_loads.h"
+#include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/gauss_newton.h"
+#include "daemon/simulation/pose/hand_attitude.h"
+#include "daemon/simulation/pose/targets.h"
 #include "daemon/simulation/reconstruction/models.h"
-#include "daemon/simulation/reconstruction/options.h"
 
 namespace footing::reconstruction {
+
+/// A foot flat on the ground: where ankle and ball are from F, the point where the centre of
+/// pressure rests (momentum::FootShape). Foot frame: x to the toes, y left, z up.
+struct FootGeometry {
+  momentum::FootShape shape;
+  body::Point ankle;
+  body::Point toe;
+  body::Point heel;  ///< Under and behind the ankle, on the ground.
+  Eigen::Vector3d ankle_F_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d toe_F_m = Eigen::Vector3d::Zero();
+  /// From W: turned by shape.yaw_rad.
+  Eigen::Matrix3d R_WF = Eigen::Matrix3d::Identity();
+
+  /// How far F is ahead of the heel.
+  double RestM() const { return shape.rest_share * shape.length_m; }
+};
+
+/// Of both feet, from the body in its T-pose.
+std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body);
+
+/// Of the person on the cells, by the body in its T-pose.
+momentum::Subject SubjectOf(const body::Body& body);
+
+/// Where a foot's joints are from its estimate, by how far recorded feet were off it
+/// (docs/pose.md); m, and one standard deviation.
+struct FootSpread {
+  double along = 0.03;  ///< In contact, beside the variance of F itself.
+  double across = 0.02;
+  double ankle_up = 0.024;
+  double toe_up = 0.02;
+  double ahead = -0.015;                        ///< Of F, feet of people who move.
+  double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat;
+  double flat_up = 0.005;     ///< In the T-pose they are: its deviation of both heights,
+  double leave_m = 0.3;       ///< and the hands' way out of it with which they rise (StandingRise).
+  double lift = 0.22;         ///< In the air, how high the foot is,
+  double forward = 0.05;      ///< and how far ahead of where it stood,
+  double lift_time_s = 0.12;  ///< with this time constant;
+  double air_level = 0.20;    ///< and how far off that it is.
+  double air_up = 0.17;
+};
+
+/// Adds targets of ankle and ball.
+void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& foot,
+                    const FootSpread& spread, pose::PoseTargets& targets);
+
+/// The same as the paper has it: stiff constraints at the foot's estimate.
+void AddPaperFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& foot,
+                         double sd_m, pose::PoseTargets& targets);
+
+inline constexpr std::size_t kHands = 2;  ///< 0 is the left one.
+
+/// A point of the body as a tracker sees it.
+struct PointInput {
+  bool valid = false;
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sd_m = Eigen::Vector3d::Constant(0.01);
+  /// Of x and y, x and z, y and z; with sd_m the whole matrix.
+  Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
+  bool of_skeleton = false;  ///< A hand that the tracker of the joints alone sees.
+};
+using HandInput = PointInput;   ///< Middle of the fist (body::Fist).
+using JointInput = PointInput;  ///< A joint of a skeleton (body::SkeletonPoints).
+using JointInputs = std::array<JointInput, stream::kBodyJoints>;  ///< By body::IndexOf.
+
+/// What the sensors measure in one frame.
+struct Inputs {
+  momentum::ContactLoads loads;
+  std::array<HandInput, kHands> hands;
+  /// How the arms are held, where their hands are not seen.
+  std::array<arms::ArmEstimate, kHands> arms = {};
+  JointInputs joints = {};
+  /// How the pelvis has turned since the T-pose, by a device on a belt.
+  arms::HandState belt = {};
+};
+
+/// For evaluation: parts of the truth at the instant of the loads, in place of their estimates, to
+/// see how much a better estimate would help. Empty in the daemon.
+struct Truth {
+  /// Joints of one foot, W.
+  struct Foot {
+    Eigen::Vector3d ankle_W_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d toe_W_m = Eigen::Vector3d::Zero();
+  };
+  std::optional<Eigen::Vector3d> com_W_m;
+  std::optional<Eigen::Vector3d> angular_W;  ///< kg m^2/s, of the body's own mass.
+  std::optional<std::array<Foot, momentum::kFeet>> feet;
+};
+
+/// Where the model of a walk expects the joints of one foot, with one standard deviation.
+struct FootPrior {
+  Eigen::Vector3d ankle_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d toe_W_m = Eigen::Vector3d::Zero();
+  double ankle_sd_m = 0, toe_sd_m = 0;
+};
+
+/// What the model of a walk expects of a frame (InsoleWalk).
+struct WalkPrior {
+  struct Com {
+    Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();
+  };
+  std::array<FootPrior, momentum::kFeet> feet;
+  std::optional<Com> com;  ///< Where the hands show the place of the body.
+};
+
+enum class Mode { kBest, kPaper };
+
+/// Standard deviations and weights of the best mode's terms.
+struct BestConstants {
+  double hand_sd_m = 0.008;  ///< Of the fist on the hand, beside what the input says.
+  double arm_spread = 1.5;   ///< Factor on an arm's deviations: its errors persist for many frames.
+  /// Of the belt on the pelvis, about each axis, beside what the attitude says.
+  double belt_sd_rad = 0.07;
+  FootSpread foot;
+  double com_sd_m = 0.005;  ///< Of the masses, beside what the filters say.
+  /// kg m^2/s, beside what the estimate says; 0: the angular momentum is left out, since as it is
+  /// estimated it helps no pose (docs/pose.md).
+  double angular_sd = 0;
+  double prior_weight = 0.6;
+  double smooth_weight = 1;             ///< At 60 Hz.
+  double regressed_prior_weight = 0.6;  ///< The same about the regression's pose.
+  double regressed_smooth_weight = 1;
+  /// Factor on the deviations of the linearised terms, whose errors persist for many frames.
+  double spread = 1.4;
+  double arm_joint_spread = 1.15;  ///< The same from the shoulders down: hands are measured.
+  double com_spread = 1.75;        ///< The same for the height of the COM.
+  /// What the covariance of all frames leaves out of the knee and what is below it while the foot
+  /// is in the air: m along one axis, reached with this time constant.
+  double aloft_sd_m = 0.14;
+  double aloft_time_s = 0.2;
+};
+
+struct Options {
+  Mode mode = Mode::kBest;
+  double rate_hz = 120;  ///< Frames a second.
+  double lag_s = 0;      ///< 0 to 0.2: poses are reported with this delay, and are better.
+  bool use_momentum = true;
+  bool use_angular_momentum = true;
+  /// Of the best mode: the momentum's filters take where hands and feet alone place the COM.
+  bool use_posture = true;
+  bool clean_up = true;
+  bool use_basis = true;
+  BestConstants best;
+
+  double step_s() const { return 1 / rate_hz; }
+  int lag_steps() const;
+};
+
+Result<void> CheckOptions(const Options& options);
+
+/// Of the solver over the basis of all poses, and over the errors of the regression.
+pose::GaussNewtonOptions BasisSolverOptions(const Options& options);
+pose::GaussNewtonOptions RegressedSolverOptions(const Options& options);
+/// Of hands and feet alone.
+pose::GaussNewtonOptions PostureSolverOptions(const Options& options);
 
 using JointPoints = std::array<body::Point, stream::kBodyJoints>;  ///< By body::IndexOf.
 
@@ -58,5 +216,133 @@ pose::LegIk LegOf(const SubjectModel& model, std::size_t foot);
 
 /// Where in W the basis has the origin of its poses: below the middle of the feet of the T-pose.
 Eigen::Vector3d BasisOrigin(const SubjectModel& model, const momentum::TPose& pose);
+
+/// The pose that hands and feet alone make likely, frame by frame: nothing of the loads but where
+/// the feet are and that they stand. A value; `model` must outlive it.
+class LikelyPosture {
+ public:
+  LikelyPosture(const SubjectModel& model, double step_s);
+
+  void Start();
+  /// The next frame: fists in W, left and right.
+  void Advance(const std::array<Eigen::Vector3d, kHands>& hands_W_m,
+               const momentum::Estimate& estimate);
+  /// Of the last frame, from `origin_m`; only where the model knows postures.
+  const Eigen::VectorXd& Predict(const Eigen::Vector3d& origin_m);
+  const Features& features() const { return features_; }
+  /// From where the features' places are.
+  const Eigen::Vector3d& middle_W_m() const { return middle_W_m_; }
+
+ private:
+  const SubjectModel* model_;
+  double step_s_;
+  Features features_;
+  Eigen::Vector3d middle_W_m_ = Eigen::Vector3d::Zero();
+  PoseRegression::Workspace workspace_;
+  Eigen::VectorXd likely_q_;
+};
+
+/// Where a hand, or another point of the body, is by now, which a tracker measures with a delay: a
+/// Kalman filter of place and velocity along each of W's axes; the velocity is white noise through
+/// a first-order lag. Measurements count as if their errors were white; they need not be, so no
+/// place is reported with a smaller deviation than the tracker's. A value.
+class HandTrack {
+ public:
+  static constexpr double kFurthestS = 0.3;  ///< Nothing is known of a hand later than that.
+
+  HandTrack() = default;
+  /// Of a point that is slower than hands are, by such a part of their speed.
+  explicit HandTrack(double speed_share) : speed_share_(speed_share) {}
+
+  /// The hand's place at `time_s`, which is later than the one before; after a pause or a step back
+  /// of kFurthestS it starts again. Finite; deviations above 0.
+  void Add(double time_s, const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& sd_m,
+           const Eigen::Vector3d& covariance_m2 = Eigen::Vector3d::Zero());
+  /// At `time_s`, if not before the last place then at that. Invalid before the first.
+  HandInput At(double time_s) const;
+
+ private:
+  void Predict(double step_s);
+
+  double speed_share_ = 1;
+  bool started_ = false;
+  double time_s_ = 0;
+  Eigen::Array3d p_m_ = Eigen::Array3d::Zero(), v_mps_ = Eigen::Array3d::Zero();
+  Eigen::Array3d pp_ = Eigen::Array3d::Zero(), pv_ = Eigen::Array3d::Zero(),
+                 vv_ = Eigen::Array3d::Zero();  ///< Their covariance.
+  Eigen::Array3d measured_variance_ = Eigen::Array3d::Ones();
+  Eigen::Vector3d covariance_m2_ = Eigen::Vector3d::Zero();  ///< Between axes, of the last place.
+};
+
+/// Of the joints of a skeleton, by body::IndexOf, which are slower than hands.
+std::array<HandTrack, stream::kBodyJoints> JointTracks();
+
+/// Joints of a tracked skeleton, such as a Kinect's (pose paper, sections 5.3 and 7.3): what of
+/// them is believed, and the terms of the solver that they are.
+/// Enough joints are valid to show the pose. Fewer, such as a tracked head, add to what boards and
+/// hands show.
+bool IsSkeleton(const JointInputs& joints);
+
+/// A term for each valid joint, which shows its one of `points`, with its covariance. A joint that
+/// is not seen has none.
+void AddJointTargets(const JointPoints& points, const JointInputs& joints,
+                     pose::PoseTargets& targets);
+
+/// A joint that is far from where the last pose, `at` in W, has it counts less, the less the
+/// further; one that is implausibly far, or not finite, is not valid. Where many are implausibly
+/// far it is the pose that is wrong, and none is dropped for that.
+void GateJoints(const JointPoints& points, const body::Kinematics& at, JointInputs& joints);
+
+/// What all joints are off by in common, as a camera that stands not quite where it was found to
+/// stand makes them. Feet and COM stand still in W, so it is learned from what the joints are off
+/// from the pose that follows all of these. Of a few joints it would be what the pose is off by.
+/// A value.
+class SkeletonOffset {
+ public:
+  void Start() { offset_m_.setZero(); }
+  /// The inputs without it: joints, and the hands that the same tracker alone
+  /// sees: another one knows a hand better than the offset is known.
+  Inputs Without(const Inputs& inputs) const;
+  /// One frame: `joints` by Without, and gated; `at` in W is the pose that was solved for them.
+  void Learn(const JointPoints& points, const JointInputs& joints, const body::Kinematics& at,
+             double step_s);
+  const Eigen::Vector3d& offset_m() const { return offset_m_; }
+
+ private:
+  Eigen::Vector3d offset_m_ = Eigen::Vector3d::Zero();
+};
+
+inline constexpr std::size_t kHeadJoint = body::IndexOf(stream::BodyJoint::kHead);
+
+/// What of the head a tracker shows that shows no skeleton: the sphere of a cap is above the head,
+/// by how much nobody measures. It is found in the half second after the T-pose, which the person
+/// still holds: boards and hands show that pose better than any other. A value.
+class HeadSeat {
+ public:
+  static constexpr double kSeconds = 0.5;
+
+  /// Whether a head is seen by itself, outside a skeleton, and surely enough to have a seat: one
+  /// that a tracker shows to a few centimetres, such as a Kinect's, is the middle of the head.
+  static bool IsLone(const JointInputs& joints);
+
+  /// `middle`: the middle of the head on the body.
+  void Start(const body::Point& middle);
+  /// Whether it is being found: meanwhile the head does not count for the pose.
+  bool Seeks() const { return sought_s_ < kSeconds; }
+  /// A frame of it: joints in W, and the pose that boards and hands alone show, in W. One that
+  /// is not lone adds nothing.
+  void See(const JointInputs& joints, const body::Kinematics& at, double step_s);
+
+  /// The point that is seen: that of the seat where it was seen for most of the time, within 35 cm
+  /// of the middle; else the middle.
+  const body::Point& point() const { return point_; }
+  bool found() const { return found_; }
+
+ private:
+  body::Point middle_, point_;
+  bool found_ = false;
+  double sought_s_ = 0, seen_s_ = 0;
+  Eigen::Vector3d sum_J_m_ = Eigen::Vector3d::Zero();  ///< Times seconds.
+};
 
 }  // namespace footing::reconstruction

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
+#include "common/virtual/camera/scene.h"
 
 namespace footing::camera {
 namespace {

@@ -1,6 +1,6 @@
 // Whether a light is a controller's sphere: the states, then rendered frames with a lamp of its
 // colour.
-#include "clients/camera/challenge.h"
+#include "clients/camera/light_checks.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <functional>
 #include <utility>
 
-#include "clients/camera/light_checks.h"
 #include "common/virtual/camera/render.h"
 
 namespace footing::camera {

@@ -1,4 +1,4 @@
-#include "clients/camera/observation.h"
+#include "clients/camera/tracking.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "clients/camera/preview_server.h"
-#include "common/camera/preview_reader.h"
+#include "common/camera/preview.h"
 #include "common/virtual/camera/render.h"
 
 namespace footing::camera {

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "clients/ctl/report/device_table.h"
-#include "clients/ctl/report/format.h"
 #include "clients/ctl/report/live_screen.h"
-#include "clients/ctl/report/server_table.h"
 
 namespace footing::ctl::display {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "common/virtual/devices/link_model.h"
-#include "daemon/sensor/reports/link_statistics.h"
+#include "daemon/sensor/reports/device_clock.h"
 #include "tests/clients/ctl/doctor_faults.h"
 
 namespace footing::ctl::doctor {

@@ -1,4 +1,4 @@
-#include "clients/ctl/report/find_device.h"
+#include "clients/ctl/report/device_table.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "clients/ctl/report/qr_code.h"
+#include "clients/ctl/report/live_screen.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "clients/game/rules/piece.h"
+#include "clients/game/rules/director.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "common/base/units.h"
-#include "daemon/simulation/biped/append.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/clients/game/short_track.h"
 
 namespace footing::game {

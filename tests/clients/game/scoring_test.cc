@@ -1,4 +1,4 @@
-#include "clients/game/rules/scoring.h"
+#include "clients/game/rules/director.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "clients/game/rules/piece.h"
+#include "clients/game/rules/director.h"
 #include "common/stream/trial.h"
 
 namespace footing::game {

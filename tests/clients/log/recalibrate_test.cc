@@ -1,4 +1,4 @@
-#include "clients/log/recalibrate.h"
+#include "clients/log/commands.h"
 
 #include <gmock/gmock.h>
 

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "clients/relay/channels.h"
 #include "clients/relay/edge.h"
-#include "clients/relay/subjects.h"
+#include "common/net/client.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/timer.h"
-#include "common/net/client.h"
 #include "tests/clients/relay/nats_server.h"
-#include "tests/common/runtime/simulated_time.h"
 #include "tests/common/net/io_fixture.h"
+#include "tests/common/runtime/simulated_time.h"
 
 namespace footing::relay {
 

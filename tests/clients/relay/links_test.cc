@@ -3,8 +3,7 @@
 
 #include <fstream>
 
-#include "clients/relay/broker_address.h"
-#include "clients/relay/login_file.h"
+#include "clients/relay/login.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::relay {

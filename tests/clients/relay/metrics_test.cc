@@ -1,4 +1,4 @@
-#include "clients/relay/metrics.h"
+#include "clients/relay/options.h"
 
 #include <gmock/gmock.h>
 

@@ -1,12 +1,10 @@
-#include "clients/relay/parser.h"
+#include "clients/relay/nats_protocol.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <string>
 #include <vector>
-
-#include "clients/relay/requests.h"
 
 namespace footing::relay::nats {
 namespace {

@@ -1,13 +1,11 @@
-#include "clients/relay/thinner.h"
+#include "clients/relay/channels.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <map>
 
-#include "clients/relay/channels.h"
-#include "clients/relay/subjects.h"
-#include "common/net/channels_of.h"
+#include "common/net/server.h"
 
 namespace footing::relay {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/skeleton/tracking/kinect_clip.h"
+#include "clients/skeleton/tracking/synthetic_clip.h"
 
 namespace footing::skeleton {
 

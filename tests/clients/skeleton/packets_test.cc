@@ -5,7 +5,7 @@
 #include "clients/skeleton/tracking/decoder.h"
 #include "clients/skeleton/tracking/dialects.h"
 #include "clients/skeleton/tracking/person_gate.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 #include "tests/clients/skeleton/clips.h"
 
 namespace footing::skeleton {

@@ -1,4 +1,4 @@
-#include "clients/skeleton/tracking/placement.h"
+#include "clients/skeleton/tracking/tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "clients/skeleton/sender.h"
-#include "clients/skeleton/udp.h"
 #include "tests/clients/skeleton/clips.h"
 
 namespace footing::skeleton {

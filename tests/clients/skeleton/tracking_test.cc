@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "clients/skeleton/tracking/synthetic_clip.h"
-#include "clients/skeleton/tracking/observation.h"
-#include "clients/skeleton/tracking/placement.h"
-#include "clients/skeleton/tracking/sender_clock.h"
 #include "clients/skeleton/tracking/tracker.h"
 #include "common/base/units.h"
 #include "tests/clients/skeleton/clips.h"

@@ -1,4 +1,4 @@
-#include "clients/skeleton/tracking/vmc.h"
+#include "clients/skeleton/tracking/dialects.h"
 
 #include <gtest/gtest.h>
 

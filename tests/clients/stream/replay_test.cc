@@ -1,4 +1,4 @@
-#include "clients/stream/replay.h"
+#include "clients/stream/plan.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <map>
 #include <numbers>
 
-#include "common/recording/recorded_session.h"
 #include "common/base/units.h"
+#include "common/recording/recorded_session.h"
 #include "tests/clients/stream/virtual_line.h"
 #include "tests/common/made_recording.h"
 #include "tests/common/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "clients/stream/runner.h"
+#include "clients/stream/dialer.h"
 
 #include <gtest/gtest.h>
 

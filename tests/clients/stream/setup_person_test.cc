@@ -1,11 +1,11 @@
-#include "clients/stream/setup_person.h"
+#include "clients/stream/body_stage.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "common/board/plate.h"
+#include "common/board/geometry.h"
 #include "common/wire/wire.h"
 
 namespace footing::stream_client {

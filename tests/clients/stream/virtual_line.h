@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "clients/stream/replay.h"
+#include "clients/stream/plan.h"
 #include "common/base/units.h"
+#include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/hub.h"
-#include "daemon/sensor/service/publish.h"
 
 namespace footing::stream_client {
 

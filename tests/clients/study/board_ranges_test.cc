@@ -7,7 +7,7 @@
 
 #include "clients/study/plan/meter.h"
 #include "common/board/geometry.h"
-#include "common/runtime/data_file.h"
+#include "common/runtime/files.h"
 #include "common/virtual/people/person.h"
 #include "daemon/simulation/mapping/any_interface.h"
 #include "tests/clients/study/range_acts.h"

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/study/anonymous.h"
 #include "clients/study/study_tables.h"
 
 namespace footing::study::bundle {

@@ -12,8 +12,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/study/session/lock.h"
-#include "clients/study/session/study_folder.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::study::journal {

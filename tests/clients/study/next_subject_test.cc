@@ -8,11 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "clients/study/session/journal.h"
-#include "clients/study/session/study_folder.h"
-#include "clients/study/child.h"
-#include "common/runtime/clock.h"
-#include "common/runtime/timekeeper.h"
+#include "clients/study/simulate_study.h"
 #include "common/base/units.h"
+#include "common/runtime/clock.h"
 
 namespace footing::study {
 namespace {

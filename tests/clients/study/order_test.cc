@@ -1,4 +1,4 @@
-#include "clients/study/plan/order.h"
+#include "clients/study/plan/phases.h"
 
 #include <algorithm>
 #include <map>

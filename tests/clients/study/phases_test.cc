@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/study/plan/survey_items.h"
+#include "clients/study/plan/protocol.h"
 
 namespace footing::study::plan {
 namespace {

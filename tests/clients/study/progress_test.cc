@@ -1,4 +1,4 @@
-#include "clients/study/report/progress.h"
+#include "clients/study/report/event.h"
 
 #include <cmath>
 

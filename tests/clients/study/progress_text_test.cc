@@ -1,4 +1,4 @@
-#include "clients/study/progress_text.h"
+#include "clients/study/simulate_study.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "common/virtual/people/range_acts.h"
 #include "common/virtual/people/style.h"
 
 namespace footing::study::ranges {

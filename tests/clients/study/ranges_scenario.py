@@ -158,7 +158,7 @@ def check_legs(stage):
     done = measure(stage, out, "--now", interface="leg")
     assert done.returncode == 0, done
     table = json.loads(out.read_text())
-    close(table["walk_frequency_min_hz"], 0.8 * 0.75, 0.12)  # The ends of common/virtual/people/limb_body.cc.
+    close(table["walk_frequency_min_hz"], 0.8 * 0.75, 0.12)  # The ends of common/virtual/people/person.cc.
     close(table["run_frequency_max_hz"], 0.8 * 3.0, 0.12)
     stage.stop("footing-stream")
     for words, says in ((["--ranges", "--interface", "joystick"], "has no range of its own"),

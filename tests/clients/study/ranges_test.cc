@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "clients/study/plan/meter.h"
-#include "common/runtime/data_file.h"
 #include "common/base/units.h"
+#include "common/runtime/files.h"
 #include "common/virtual/people/person.h"
 #include "daemon/offline/analysis/features_chain.h"
 #include "daemon/simulation/mapping/any_interface.h"

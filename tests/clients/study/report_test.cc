@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "clients/study/report/analysis.h"
-#include "clients/study/report/figure.h"
 #include "clients/study/report/page.h"
 #include "common/stream/response.h"
 #include "tests/clients/study/study_people.h"

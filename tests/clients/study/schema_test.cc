@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/study/plan/protocol.h"
-#include "common/runtime/data_file.h"
+#include "common/runtime/files.h"
 
 namespace footing::study::plan {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include "common/runtime/clock.h"
-#include "common/net/lease_control.h"
+#include "common/net/lease.h"
 #include "common/net/server.h"
+#include "common/runtime/clock.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::study {

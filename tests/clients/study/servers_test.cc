@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "common/runtime/clock.h"
-#include "common/net/lease_control.h"
-#include "common/runtime/timer.h"
-#include "common/net/channels_of.h"
+#include "common/net/lease.h"
 #include "common/net/server.h"
+#include "common/runtime/clock.h"
+#include "common/runtime/timer.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::study {

@@ -9,12 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "clients/study/plan/screen_message.h"
-#include "clients/study/session/active_time.h"
-#include "clients/study/session/anticipation.h"
 #include "clients/study/session/console.h"
-#include "clients/study/session/heading.h"
-#include "clients/study/session/respondent.h"
-#include "clients/study/session/trial_tracker.h"
+#include "clients/study/session/servers.h"
+#include "clients/study/session/session_context.h"
+#include "clients/study/session/survey.h"
+#include "clients/study/session/trial_run.h"
 
 namespace footing::study {
 namespace {

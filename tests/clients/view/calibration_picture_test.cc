@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/board/layout.h"
-#include "common/camera/marks.h"
+#include "common/camera/camera_pose.h"
 #include "tests/clients/view/made_preview.h"
 #include "tests/clients/view/made_stream.h"
 #include "tests/clients/view/picture_fixture.h"

@@ -1,10 +1,10 @@
-#include "clients/view/scene/camera_preview.h"
+#include "clients/view/scene/camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "clients/view/scene/model.h"
-#include "clients/view/scene/words.h"
+#include "clients/view/scene/text.h"
 #include "tests/clients/view/made_preview.h"
 
 namespace footing::scene {

@@ -1,8 +1,8 @@
-#include "clients/view/scene/fall_replay.h"
+#include "clients/view/scene/model.h"
 
 #include <gtest/gtest.h>
 
-#include "clients/view/scene/show.h"
+#include "clients/view/scene/stage.h"
 #include "common/base/units.h"
 
 namespace footing::scene {

@@ -1,9 +1,8 @@
-#include "clients/view/scene/game_text.h"
+#include "clients/view/scene/text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/view/scene/words.h"
 #include "tests/clients/view/made_game.h"
 #include "tests/clients/view/made_stream.h"
 

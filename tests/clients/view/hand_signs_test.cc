@@ -1,4 +1,4 @@
-#include "clients/view/scene/hand_signs.h"
+#include "clients/view/scene/signs.h"
 
 #include <gtest/gtest.h>
 

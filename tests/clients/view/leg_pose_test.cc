@@ -1,4 +1,4 @@
-#include "clients/view/scene/leg_pose.h"
+#include "clients/view/scene/tally.h"
 
 #include <gtest/gtest.h>
 

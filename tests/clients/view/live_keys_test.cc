@@ -1,4 +1,4 @@
-#include "clients/view/scene/live_keys.h"
+#include "clients/view/scene/model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,12 +2,11 @@
 
 #include <cmath>
 
-#include "clients/view/scene/boards.h"
+#include "clients/view/scene/stage.h"
+#include "common/base/units.h"
 #include "common/board/layout.h"
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/body/momentum.h"
-#include "common/base/units.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene::made {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "clients/view/scene/camera_preview.h"
+#include "clients/view/scene/camera.h"
 
 namespace footing::scene::made {
 

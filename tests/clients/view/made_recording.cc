@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/base/units.h"
 #include "common/recording/recording_writer.h"
-#include "common/base/time.h"
 #include "common/wire/wire.h"
 #include "tests/clients/view/made_stream.h"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/view/scene/show.h"
-#include "clients/view/scene/words.h"
+#include "clients/view/scene/stage.h"
+#include "clients/view/scene/text.h"
 #include "common/base/units.h"
 #include "tests/clients/view/made_stream.h"
 

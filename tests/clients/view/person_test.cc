@@ -1,10 +1,9 @@
-#include "clients/view/scene/person.h"
+#include "clients/view/scene/part.h"
 
 #include <gtest/gtest.h>
 
-#include "clients/view/scene/boards.h"
 #include "clients/view/scene/stage.h"
-#include "clients/view/scene/words.h"
+#include "clients/view/scene/text.h"
 #include "tests/clients/view/made_person.h"
 #include "tests/clients/view/made_stream.h"
 

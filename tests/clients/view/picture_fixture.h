@@ -9,8 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "clients/view/render/image.h"
-#include "clients/view/render/off_screen.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/render/target.h"
 #include "clients/view/scene/model.h"

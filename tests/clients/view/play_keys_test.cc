@@ -1,4 +1,4 @@
-#include "clients/view/scene/play_keys.h"
+#include "clients/view/scene/timeline.h"
 
 #include <gtest/gtest.h>
 

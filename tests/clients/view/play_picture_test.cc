@@ -1,4 +1,4 @@
-#include "clients/view/render/play_picture.h"
+#include "clients/view/render/screen.h"
 
 #include <gtest/gtest.h>
 

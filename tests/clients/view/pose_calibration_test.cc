@@ -1,5 +1,5 @@
 // The calibration's screen, driven by the ticks of a footingd whose camera is not calibrated.
-#include "clients/view/app/pose_calibration.h"
+#include "clients/view/app/window.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

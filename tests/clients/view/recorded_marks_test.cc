@@ -1,12 +1,12 @@
-#include "clients/view/app/recorded_marks.h"
+#include "clients/view/app/recorded_show.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "common/base/units.h"
 #include "common/recording/recording_writer.h"
-#include "common/base/time.h"
 #include "common/wire/wire.h"
 #include "tests/common/temporary_folder.h"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "clients/view/scene/words.h"
+#include "clients/view/scene/text.h"
 #include "tests/clients/view/made_recording.h"
 #include "tests/common/temporary_folder.h"
 

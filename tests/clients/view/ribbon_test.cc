@@ -7,7 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "clients/view/scene/digits.h"
 #include "common/base/units.h"
 #include "tests/clients/view/made_stream.h"
 

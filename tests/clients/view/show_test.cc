@@ -1,4 +1,4 @@
-#include "clients/view/scene/show.h"
+#include "clients/view/scene/stage.h"
 
 #include <gtest/gtest.h>
 

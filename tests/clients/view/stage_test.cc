@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/view/scene/bird_motion.h"
+#include "clients/view/scene/tally.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene {

@@ -1,4 +1,4 @@
-#include "clients/view/scene/strip.h"
+#include "clients/view/scene/model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,9 @@
-#include "clients/view/scene/study_text.h"
+#include "clients/view/scene/text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "clients/view/scene/model.h"
-#include "clients/view/scene/words.h"
 
 namespace footing::scene {
 namespace {

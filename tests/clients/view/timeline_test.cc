@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/view/scene/timeline_text.h"
 #include "tests/clients/view/sample_timeline.h"
 
 namespace footing::timeline {

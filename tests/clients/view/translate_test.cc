@@ -1,4 +1,4 @@
-#include "clients/view/app/translate.h"
+#include "clients/view/app/recorded_show.h"
 
 #include <gtest/gtest.h>
 

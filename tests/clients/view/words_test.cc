@@ -1,12 +1,10 @@
-#include "clients/view/scene/words.h"
+#include "clients/view/scene/text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "clients/view/scene/interface_text.h"
-#include "clients/view/scene/lost_text.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "common/body/body.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::body::test {
 

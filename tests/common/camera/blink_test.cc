@@ -1,11 +1,11 @@
 // The switching of a light on frames of a renderer that shares no code with the finder.
-#include "common/camera/blink.h"
+#include "common/camera/image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
+#include "common/virtual/camera/scene.h"
 #include "tests/common/camera/rendered.h"
 
 namespace footing::sphere {

@@ -4,9 +4,8 @@
 #include <numbers>
 
 #include "common/board/layout.h"
-#include "common/camera/marks.h"
-#include "common/camera/observations.h"
-#include "common/virtual/devices/random.h"
+#include "common/camera/camera_pose.h"
+#include "common/virtual/devices/noise.h"
 
 /// A camera in front of two boards, and what it sees of a sphere on them.
 namespace footing::camera_pose {

@@ -1,4 +1,4 @@
-#include "common/camera/cone.h"
+#include "common/camera/disc_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,7 @@
 
 #include "common/camera/blobs.h"
 #include "common/camera/lens.h"
-#include "common/camera/profile_table.h"
-#include "common/virtual/camera/lens.h"
+#include "common/virtual/camera/scene.h"
 
 namespace footing::sphere {
 namespace {

@@ -4,9 +4,8 @@
 
 #include <cmath>
 
-#include "common/camera/dot_grid.h"
 #include "common/camera/fit_lens.h"
-#include "common/virtual/camera/sheet.h"
+#include "common/virtual/camera/scene.h"
 
 namespace footing::lens_calibration {
 namespace {

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/camera/preview_reader.h"
-
 namespace footing::preview {
 namespace {
 

@@ -1,4 +1,4 @@
-#include "common/camera/unseen_motion.h"
+#include "common/camera/disc_fitter.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,6 @@
 #include <fstream>
 
 #include "common/frames/camera_file.h"
-#include "common/frames/frame_folder.h"
-#include "common/frames/netpbm.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::frames {

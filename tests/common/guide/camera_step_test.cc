@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "common/board/layout.h"
-#include "common/camera/samples.h"
-#include "common/guide/set_up.h"
 #include "common/base/units.h"
+#include "common/board/layout.h"
+#include "common/camera/camera_pose.h"
+#include "common/guide/set_up.h"
 #include "tests/common/camera/boards.h"
 
 namespace footing::guide {

@@ -1,11 +1,11 @@
-#include "common/guide/layout.h"
+#include "common/guide/recent.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "common/board/layout.h"
 #include "common/base/units.h"
+#include "common/board/layout.h"
 
 namespace footing::guide {
 namespace {

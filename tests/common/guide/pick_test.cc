@@ -1,4 +1,4 @@
-#include "common/guide/pick.h"
+#include "common/guide/device_steps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "common/guide/weigh.h"
+#include "common/guide/board_steps.h"
 
 #include <gtest/gtest.h>
 

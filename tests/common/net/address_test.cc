@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "common/net/run_folder.h"
 #include "common/net/socket.h"
 #include "tests/common/temporary_folder.h"
 

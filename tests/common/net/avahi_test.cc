@@ -1,12 +1,9 @@
-#include "common/net/avahi.h"
+#include "common/net/discovery.h"
 
 #include <gtest/gtest.h>
 
 #include <boost/asio/io_context.hpp>
 #include <cstdlib>
-
-#include "common/net/advertiser.h"
-#include "common/net/browser.h"
 
 namespace footing::discovery {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/net/framed_connection.h"
+#include "common/net/framing.h"
 #include "common/net/listener.h"
 #include "tests/common/net/io_fixture.h"
 

@@ -1,4 +1,4 @@
-#include "common/net/first_bytes.h"
+#include "common/net/tls_channel.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "common/runtime/run_until.h"
 #include "common/net/address.h"
+#include "common/runtime/timer.h"
 
 namespace footing::transport {
 

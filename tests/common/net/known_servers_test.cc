@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "common/net/fingerprint.h"
+#include "common/net/tls_context.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::tls {

@@ -15,9 +15,9 @@
 #include <thread>
 #include <vector>
 
-#include "common/net/run_folder.h"
-#include "tests/common/temporary_folder.h"
+#include "common/net/address.h"
 #include "tests/common/net/io_fixture.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::transport {
 namespace {

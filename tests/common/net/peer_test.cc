@@ -1,4 +1,4 @@
-#include "common/net/peer.h"
+#include "common/net/limits.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

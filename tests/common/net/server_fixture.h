@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/net/framed_connection.h"
+#include "common/net/framing.h"
 #include "common/net/listener.h"
 #include "common/net/server.h"
 #include "common/net/socket.h"

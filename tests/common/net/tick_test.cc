@@ -6,8 +6,7 @@
 #include <limits>
 
 #include "common/net/framing.h"
-#include "common/net/publication.h"
-#include "common/net/tick_rate.h"
+#include "common/net/server.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::transport {

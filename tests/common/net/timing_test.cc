@@ -5,11 +5,9 @@
 #include <limits>
 #include <random>
 
-#include "common/net/answers.h"
-#include "common/net/backoff.h"
 #include "common/net/client.h"
 #include "common/net/clock_offset.h"
-#include "common/net/decimator.h"
+#include "common/net/session.h"
 
 namespace footing::transport {
 namespace {

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "common/recording/walk.h"
+#include "common/recording/mcap_reader.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/repair.h"
-#include "common/recording/schema.h"
 #include "footing/v1/session.pb.h"
 #include "tests/common/temporary_folder.h"
 

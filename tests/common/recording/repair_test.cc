@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "common/recording/summary.h"
+#include "common/recording/mcap_reader.h"
 #include "tests/common/recording/recording_fixture.h"
 
 namespace footing::recording {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/recording/walk.h"
-#include "common/recording/writer.h"
+#include "common/recording/mcap_reader.h"
+#include "common/recording/mcap_writer.h"
 
 namespace footing::mcap {
 

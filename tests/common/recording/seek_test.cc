@@ -1,4 +1,4 @@
-#include "common/recording/seek.h"
+#include "common/recording/mcap_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/base/units.h"
 #include "common/recording/recording_writer.h"
-#include "common/base/instant.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::playback {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "common/recording/recorded_session.h"
-#include "common/recording/server_recorder.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::recording {

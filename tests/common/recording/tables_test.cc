@@ -1,4 +1,4 @@
-#include "common/recording/tables.h"
+#include "common/recording/bids_tables.h"
 
 #include <gmock/gmock.h>
 

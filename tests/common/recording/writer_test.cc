@@ -1,10 +1,10 @@
-#include "common/recording/writer.h"
+#include "common/recording/mcap_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/recording/crc.h"
-#include "common/recording/summary.h"
+#include "common/recording/mcap_reader.h"
+#include "common/recording/mcap_records.h"
 #include "tests/common/recording/sample_file.h"
 
 namespace footing::mcap {

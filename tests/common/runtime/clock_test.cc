@@ -11,8 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include "common/runtime/timekeeper.h"
-
 namespace footing::clock {
 namespace {
 

@@ -9,8 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "common/runtime/data_file.h"
-#include "common/runtime/lines_of_keys.h"
+#include "common/runtime/files.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::config {

@@ -4,8 +4,7 @@
 #include <string>
 #include <thread>
 
-#include "common/runtime/bounded_queue.h"
-#include "common/runtime/latest.h"
+#include "common/runtime/exchange.h"
 
 namespace footing::exchange {
 namespace {

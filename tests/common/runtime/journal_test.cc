@@ -18,7 +18,6 @@
 #include <sstream>
 #include <string>
 
-#include "common/runtime/fields.h"
 #include "common/runtime/log.h"
 
 // Each test runs in a process of its own whose /run holds a journal socket of the test.

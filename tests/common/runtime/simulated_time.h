@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "common/runtime/clock.h"
-#include "common/runtime/timekeeper.h"
 
 namespace footing::timer {
 

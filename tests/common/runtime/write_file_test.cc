@@ -1,4 +1,4 @@
-#include "common/runtime/write_file.h"
+#include "common/runtime/files.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/runtime/data_file.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::config {

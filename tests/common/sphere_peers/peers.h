@@ -6,7 +6,7 @@
 #include "common/virtual/camera/scene.h"
 
 /// How other trackers measure a luminous sphere, written from their published descriptions with
-/// OpenCV; nothing here is shared with common/sphere.
+/// OpenCV; nothing here is shared with common/camera.
 namespace footing::sphere_peers {
 
 /// What both know of the camera and of the sphere.

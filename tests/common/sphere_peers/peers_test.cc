@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "common/camera/find.h"
-#include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
+#include "common/virtual/camera/scene.h"
 #include "tests/common/camera/rendered.h"
 #include "tests/common/sphere_peers/peers.h"
 

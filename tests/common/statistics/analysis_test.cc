@@ -1,11 +1,14 @@
-#include "common/statistics/analysis.h"
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <numbers>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/statistics/analysis.h"
+#include "common/statistics/within_subject.h"
 #include "tests/common/statistics/reference.h"
 
 namespace footing::statistics {
@@ -265,6 +268,318 @@ TEST(Analysis, RefusesMethodsThatATestDoesNotHave) {
   request.method = Method::kPermutation;
   StudyTable counts = Table();
   EXPECT_EQ(Analyze(counts, request).error().kind, ErrorKind::kUsage);
+}
+
+}  // namespace
+
+// Data that leave a formula without a denominator: every figure stays a number in its range.
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Finite, and p within [0, 1]; an open end of an interval is null.
+void ExpectNumbers(const ordered_json& value, const std::string& name) {
+  if (value.is_object() || value.is_array()) {
+    for (const auto& [key, inner] : value.items()) {
+      ExpectNumbers(inner, value.is_array() ? name : key);
+    }
+    return;
+  }
+  const bool open = name == "low" || name == "high" || name == "df" ||
+                    name == "standard_deviation" || name == "estimate";
+  if (value.is_null()) {
+    EXPECT_TRUE(open) << name;
+    return;
+  }
+  if (!value.is_number()) return;
+  EXPECT_TRUE(std::isfinite(value.get<double>())) << name;
+  const bool p = name == "p" || name.ends_with("_p") || name.ends_with("_holm");
+  if (p) {
+    EXPECT_GE(value.get<double>(), 0) << name;
+    EXPECT_LE(value.get<double>(), 1) << name;
+  }
+}
+
+StudyTable TableOf(const std::vector<std::vector<double>>& groups) {
+  StudyTable table;
+  Blocks blocks;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    table.groups.push_back({std::string(1, static_cast<char>('a' + i)), groups[i]});
+    table.exposures.emplace_back(groups[i].size(), 1.0);
+    blocks.groups.push_back(table.groups.back().name);
+  }
+  bool equal_sizes = true;
+  for (const auto& group : groups) equal_sizes = equal_sizes && group.size() == groups[0].size();
+  if (!equal_sizes || groups[0].size() < 2) return table;
+  for (std::size_t subject = 0; subject < groups[0].size(); ++subject) {
+    blocks.subjects.push_back(std::to_string(subject));
+    std::vector<double>& row = blocks.values.emplace_back();
+    for (const auto& group : groups) row.push_back(group[subject]);
+  }
+  table.blocks = blocks;
+  return table;
+}
+
+/// All tests, methods and alternatives that apply; the reports by test.
+std::vector<ordered_json> RunAll(const StudyTable& table) {
+  std::vector<ordered_json> reports;
+  const std::optional<Method> methods[] = {
+      {}, Method::kExact, Method::kPermutation, Method::kAsymptotic};
+  for (const auto test :
+       {TestKind::kDunnett, TestKind::kSteel, TestKind::kPaired, TestKind::kRate}) {
+    if (test == TestKind::kPaired && !table.blocks) continue;
+    for (const auto& method : methods) {
+      for (const auto alternative :
+           {Alternative::kTwoSided, Alternative::kGreater, Alternative::kLess}) {
+        for (const auto ties : {Ties::kPairwise, Ties::kJoint}) {
+          AnalysisRequest request;
+          request.test = test;
+          request.method = method;
+          request.alternative = alternative;
+          request.ties = ties;
+          request.permutations = 200;
+          const auto report = Analyze(table, request);
+          if (!report) {
+            EXPECT_EQ(report.error().kind, ErrorKind::kUsage) << report.error().message;
+            continue;
+          }
+          SCOPED_TRACE(report->at("procedure").get<std::string>());
+          ExpectNumbers(*report, "");
+          EXPECT_EQ(report->at("rows").size(), table.groups.size() - 1);
+          reports.push_back(*report);
+        }
+      }
+    }
+  }
+  EXPECT_GT(reports.size(), 20u);
+  return reports;
+}
+
+TEST(DegenerateData, OfEqualValuesHaveNoDifference) {
+  for (const ordered_json& report : RunAll(TableOf({{3, 3, 3}, {3, 3, 3}, {3, 3, 3}}))) {
+    if (report.at("test") == "rate") continue;
+    for (const ordered_json& row : report.at("rows")) {
+      EXPECT_EQ(row.at("p"), 1) << report.dump();
+      EXPECT_EQ(row.at("statistic"), 0);
+      EXPECT_EQ(row.at("estimate"), 0);
+    }
+  }
+}
+
+TEST(DegenerateData, OfOnePairWithoutVarianceAffectNoOther) {
+  const auto reports = RunAll(TableOf({{2, 2, 2, 2}, {2, 2, 2, 2}, {1, 3, 5, 7}}));
+  for (const ordered_json& report : reports) {
+    if (report.at("test") != "steel") continue;
+    const bool pairwise = report.at("ties") == "pairwise";
+    EXPECT_TRUE(!pairwise || report.at("rows")[0].at("p") == 1) << report.dump();
+    EXPECT_EQ(report.at("rows")[0].at("statistic"), 0);
+  }
+}
+
+TEST(DegenerateData, WithoutVarianceWithinGroupsAreSaidToBeSo) {
+  const auto reports = RunAll(TableOf({{1, 1, 1}, {2, 2, 2}, {1, 1, 1}}));
+  int dunnett = 0;
+  for (const ordered_json& report : reports) {
+    if (report.at("test") != "dunnett") continue;
+    ++dunnett;
+    EXPECT_NE(report.at("note").get<std::string>().find("p says nothing"), std::string::npos);
+    EXPECT_EQ(report.at("rows")[1].at("p"), 1);
+    const double expected = report.at("alternative") == "less" ? 1 : 0;
+    EXPECT_EQ(report.at("rows")[0].at("p"), expected);
+  }
+  EXPECT_GT(dunnett, 0);
+}
+
+TEST(DegenerateData, OfTwoValuesInAGroup) { RunAll(TableOf({{1, 2}, {3, 5}})); }
+
+TEST(DegenerateData, OfOneValueInTheControl) { RunAll(TableOf({{1}, {3, 5, 4}, {2}})); }
+
+TEST(DegenerateData, OfOneValueInEachGroupHaveAnAsymptoticP) {
+  const Groups groups = {{"control", {1}}, {"treatment", {2}}};
+  for (const Ties ties : {Ties::kPairwise, Ties::kJoint}) {
+    const auto p = SteelAsymptotic(groups, Alternative::kTwoSided, {.ties = ties});
+    // U is 0 or 1, so its deviation is 1/2 and z = 1: p = 2 (1 - Phi(1)).
+    EXPECT_NEAR(p.at(0), std::erfc(1 / std::sqrt(2.0)), 1e-10);
+  }
+}
+
+TEST(DegenerateData, OfGreatAndSmallScale) {
+  RunAll(TableOf({{0, 2, 1, 0}, {0, 0, 0, 1}, {0, 0, 0, 0}}));
+  for (const double scale : {1e100, 1e-100, 5e-324}) {
+    StudyTable table = TableOf({{1, 2, 1, 3}, {2, 3, 3, 5}});
+    for (Group& group : table.groups) {
+      for (double& value : group.values) value *= scale;
+    }
+    for (auto& row : table.blocks->values) {
+      for (double& value : row) value *= scale;
+    }
+    AnalysisRequest request;
+    for (const auto test : {TestKind::kDunnett, TestKind::kSteel, TestKind::kPaired}) {
+      request.test = test;
+      const auto report = Analyze(table, request);
+      ASSERT_TRUE(report);
+      ExpectNumbers(*report, "");
+    }
+  }
+}
+
+TEST(DegenerateData, OfManyGroups) {
+  std::vector<std::vector<double>> groups;
+  for (int i = 0; i < 20; ++i) groups.push_back({0.0 + i % 3, 1.0 + i % 4, 2.0 + i % 5});
+  AnalysisRequest request;
+  request.permutations = 500;
+  for (const auto test :
+       {TestKind::kDunnett, TestKind::kSteel, TestKind::kPaired, TestKind::kRate}) {
+    request.test = test;
+    const auto report = Analyze(TableOf(groups), request);
+    ASSERT_TRUE(report) << report.error().message;
+    ExpectNumbers(*report, "");
+  }
+}
+
+}  // namespace
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const double kEqualGroups = 1 / std::numbers::sqrt2;
+
+ManyToOne Family(std::vector<double> loadings, double degrees, bool two_sided) {
+  return {std::move(loadings), degrees, two_sided};
+}
+
+/// With one treatment the loading has no effect: T is Student's t, whose tails for 1, 2 and 4
+/// degrees of freedom are elementary functions.
+double StudentTail(double t, double degrees) {
+  if (degrees == 1) return std::atan(1 / t) / std::numbers::pi;
+  if (degrees == 2) return 1 / (std::hypot(t, std::sqrt(2)) * (std::hypot(t, std::sqrt(2)) + t));
+  return 0.5 * std::erfc(t / std::numbers::sqrt2);
+}
+
+TEST(MaxTail, OfOneTreatmentIsStudentsTailToTenDigitsFarOut) {
+  for (const double loading : {0.1, kEqualGroups, 0.95, 0.999}) {
+    for (const double degrees : {1.0, 2.0, kInfinity}) {
+      for (const double t : {0.3, 1.0, 3.0, 7.0, 12.0, 25.0, 1e3, 1e6, 1e12}) {
+        if (std::isinf(degrees) && t > 30) continue;  // Below the smallest double.
+        const double tail = StudentTail(t, degrees);
+        EXPECT_NEAR(MaxTail(Family({loading}, degrees, false), t) / tail, 1, 1e-10)
+            << loading << " " << degrees << " " << t;
+        EXPECT_NEAR(MaxTail(Family({loading}, degrees, true), t) / (2 * tail), 1, 1e-10)
+            << loading << " " << degrees << " " << t;
+      }
+    }
+  }
+}
+
+TEST(MaxTail, AtZeroIsTheChanceThatTheControlIsNotTheGreatest) {
+  // Of k + 1 equal groups each is the greatest equally often: 1 - 1 / (k + 1).
+  for (int k = 1; k <= 12; ++k) {
+    for (const double degrees : {1.0, 7.0, kInfinity}) {
+      const std::vector<double> loadings(static_cast<std::size_t>(k), kEqualGroups);
+      EXPECT_NEAR(MaxTail(Family(loadings, degrees, false), 0), 1 - 1.0 / (k + 1), 1e-14);
+    }
+  }
+}
+
+TEST(MaxTail, OfManyTreatmentsFarOutIsTheSumOfTheirTails) {
+  // P(any) = sum P - P(two at once), and two at once are rarer by orders of magnitude.
+  const std::vector<double> loadings = {0.3, 0.5, kEqualGroups};
+  for (const double t : {8.0, 12.0}) {
+    const double sum = 3 * std::erfc(t / std::numbers::sqrt2);
+    EXPECT_NEAR(MaxTail(Family(loadings, kInfinity, true), t) / sum, 1, 1e-6) << t;
+  }
+}
+
+TEST(MaxTail, GrowsWithTheOrderOfUnequalLoadingsIrrelevant) {
+  const double tail = MaxTail(Family({0.2, 0.9, 0.6}, 11, true), 2.2);
+  EXPECT_NEAR(MaxTail(Family({0.9, 0.6, 0.2}, 11, true), 2.2), tail, 1e-15);
+  EXPECT_GT(MaxTail(Family({0.9, 0.6, 0.2, 0.6}, 11, true), 2.2), tail);
+}
+
+TEST(MaxTail, OfManyDegreesIsThatOfTheNormalLimit) {
+  const std::vector<double> loadings(4, kEqualGroups);
+  const double limit = MaxTail(Family(loadings, kInfinity, true), 2.5);
+  // The first correction is of the order 1 / degrees.
+  EXPECT_NEAR(MaxTail(Family(loadings, 1e9, true), 2.5), limit, 1e-9);
+  EXPECT_NEAR(MaxTail(Family(loadings, 1e4, true), 2.5), limit, 1e-4);
+}
+
+TEST(MaxTail, AtTheEndsIsZeroOrOneAndNeverNaN) {
+  constexpr double kGreatest = std::numeric_limits<double>::max();
+  for (const double degrees : {1.0, 30.0, kInfinity}) {
+    for (const double t : {kInfinity, kGreatest}) {
+      for (const bool two_sided : {false, true}) {
+        const double tail = MaxTail(Family({0.5, 0.8}, degrees, two_sided), t);
+        EXPECT_GE(tail, 0);
+        EXPECT_LT(tail, 1e-300);
+      }
+      EXPECT_EQ(MaxTail(Family({0.5, 0.8}, degrees, false), -t), 1);
+    }
+    EXPECT_EQ(MaxTail(Family({0.5}, degrees, true), 0), 1);
+  }
+}
+
+TEST(MaxQuantile, FulfilsItsDefinition) {
+  for (const double tail : {0.3, 0.05, 1e-4, 1e-9}) {
+    for (const double degrees : {1.0, 3.0, 40.0, kInfinity}) {
+      for (const bool two_sided : {false, true}) {
+        const ManyToOne family = Family({0.4, 0.6, 0.9}, degrees, two_sided);
+        EXPECT_NEAR(MaxTail(family, MaxQuantile(family, tail)) / tail, 1, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(MaxQuantile, RoundsToDunnettsPrintedTable) {
+  // One-sided 5 % points of three treatments (Dunnett 1955): 2.34, 2.19 and 2.06.
+  const std::vector<double> three(3, kEqualGroups);
+  EXPECT_NEAR(MaxQuantile(Family(three, 10, false), 0.05), 2.34, 0.005);
+  EXPECT_NEAR(MaxQuantile(Family(three, 20, false), 0.05), 2.19, 0.005);
+  EXPECT_NEAR(MaxQuantile(Family(three, kInfinity, false), 0.05), 2.06, 0.005);
+}
+
+TEST(MaxQuantile, AgreesWithTheTableOfCriticalValues) {
+  SKIP_WITHOUT_REFERENCE_TABLES();
+  const auto rows = test::ReadReference("dunnett_critical_values.csv");
+  ASSERT_GE(rows.size(), 100u);
+  for (const auto& row : rows) {
+    const std::vector<double> loadings(std::stoul(row.at("k_treatments")), kEqualGroups);
+    const double degrees = test::NumberIn(row, "df"), alpha = test::NumberIn(row, "alpha");
+    EXPECT_NEAR(MaxQuantile(Family(loadings, degrees, true), alpha),
+                test::NumberIn(row, "two_sided"), 1e-10);
+    EXPECT_NEAR(MaxQuantile(Family(loadings, degrees, false), alpha),
+                test::NumberIn(row, "one_sided"), 1e-10);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+using testing::ElementsAre;
+
+// R: quantile(c(7, 1, 3, 2), c(0, 0.25, 0.5, 0.95, 1)).
+TEST(Quantile, IsLinearBetweenTheTwoNearestValues) {
+  const std::vector<double> values = {7, 1, 3, 2};
+  EXPECT_EQ(QuantileOf(values, 0), 1);
+  EXPECT_DOUBLE_EQ(QuantileOf(values, 0.25), 1.75);
+  EXPECT_DOUBLE_EQ(QuantileOf(values, 0.95), 6.4);
+  EXPECT_EQ(QuantileOf(values, 1), 7);
+  EXPECT_EQ(MedianOf(values), 2.5);
+  EXPECT_EQ(MedianOf({5}), 5);
+}
+
+TEST(MeanRanks, TiedValuesShareTheMeanOfTheirRanks) {
+  const MeanRanks ranked = RankWithTies({-1, 4, -1, 0, 4, 4});
+  EXPECT_THAT(ranked.ranks, ElementsAre(1.5, 5, 1.5, 3, 5, 5));
+  EXPECT_EQ(ranked.tie_sum, (8 - 2) + (27 - 3));
+}
+
+TEST(MeanRanks, ValuesThatDifferByRoundingAreTiedWhereThatIsAsked) {
+  const std::vector<double> values = {0.3 - 0.1, 0.2, 0.25};
+  ASSERT_NE(values[0], values[1]);
+  EXPECT_EQ(RankWithTies(values).tie_sum, 0);
+  EXPECT_THAT(RankWithTies(values, 1e-12).ranks, ElementsAre(1.5, 1.5, 3));
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "common/statistics/negative_binomial.h"
-
 namespace footing::statistics {
 namespace {
 

@@ -1,4 +1,4 @@
-#include "common/statistics/steel.h"
+#include "common/statistics/samples.h"
 
 #include <gtest/gtest.h>
 

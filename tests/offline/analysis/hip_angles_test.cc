@@ -1,10 +1,9 @@
-#include "daemon/offline/analysis/hip_angles.h"
+#include "daemon/offline/analysis/pose_metrics.h"
 
 #include <gtest/gtest.h>
 
-#include "common/body/skeleton.h"
 #include "common/base/units.h"
-#include "daemon/offline/analysis/pose_metrics.h"
+#include "common/body/skeleton.h"
 
 namespace footing::eval {
 namespace {

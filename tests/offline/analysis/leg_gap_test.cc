@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::legs {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/arm_bound.h"
+#include "daemon/offline/eval/arm.h"
 
 #include <gtest/gtest.h>
 

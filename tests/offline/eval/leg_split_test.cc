@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/leg_split.h"
+#include "daemon/offline/eval/fusion.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "common/base/units.h"
 #include "daemon/offline/eval/gait_trial.h"
-#include "daemon/simulation/biped/limits.h"
+#include "daemon/simulation/biped/body_state.h"
 
 namespace footing::eval {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/progress.h"
+#include "daemon/offline/eval/report.h"
 
 #include <gtest/gtest.h>
 

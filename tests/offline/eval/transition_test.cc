@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/transition_trial.h"
+#include "daemon/offline/eval/transitions.h"
 
 #include <gtest/gtest.h>
 

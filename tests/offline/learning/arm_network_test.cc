@@ -5,7 +5,6 @@
 
 #include "common/base/units.h"
 #include "daemon/offline/learning/network.h"
-#include "daemon/offline/learning/training.h"
 
 namespace footing::arm_network {
 namespace {

@@ -1,10 +1,10 @@
-#include "daemon/offline/learning/candidates.h"
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "daemon/offline/learning/least_squares.h"
+#include "daemon/offline/learning/candidates.h"
+#include "daemon/offline/learning/cascade.h"
+#include "tests/offline/learning/problems.h"
 
 namespace footing::learning {
 namespace {
@@ -116,6 +116,89 @@ TEST(Candidates, CovarianceChangesNeitherWithTheErrorsSizeNorWithRowsRepeated) {
       CandidateTask<double>::Covariance(twice, 1024 * error.replicate(2, 1)), {}, second);
   EXPECT_EQ(once.epochs, scaled.epochs);
   EXPECT_TRUE(once.weights.isApprox(scaled.weights, 1e-6));
+}
+
+}  // namespace
+
+namespace {
+
+Eigen::MatrixXd One(double value) { return Eigen::MatrixXd::Constant(1, 1, value); }
+
+TEST(Quickprop, JumpsToTheLowestPointOfAParabola) {
+  // GIVEN f = 2 (w - 3)^2, slope 4 (w - 3), and a first step by the slope alone.
+  Quickprop quickprop(1, 1, {.epsilon = 0.4, .growth = 2, .decay = 0});
+  Eigen::MatrixXd w = One(0);
+  quickprop.Step(One(4 * (0 - 3.0)), w);
+  EXPECT_DOUBLE_EQ(w(0), 4.8);  // 0.4 * 12: beyond the lowest point.
+  // WHEN the slope has changed its sign, THEN the parabola through both slopes is followed alone.
+  quickprop.Step(One(4 * (4.8 - 3)), w);
+  EXPECT_NEAR(w(0), 3, 1e-12);
+}
+
+TEST(Quickprop, GrowsAStepByAtMostItsFactor) {
+  Quickprop quickprop(1, 1, {.epsilon = 1, .growth = 1.75, .decay = 0});
+  Eigen::MatrixXd w = One(0);
+  quickprop.Step(One(-1), w);
+  EXPECT_DOUBLE_EQ(w(0), 1);
+  quickprop.Step(One(-0.99), w);  // Nearly as steep: the parabola's lowest point is 99 away.
+  EXPECT_DOUBLE_EQ(w(0), 1 + 0.99 + 1.75 * 1);
+}
+
+TEST(Quickprop, StaysFiniteOnEqualSlopesAndOnNone) {
+  Quickprop quickprop(1, 1, {.epsilon = 1, .growth = 2, .decay = 0});
+  Eigen::MatrixXd w = One(1);
+  for (const double slope : {1.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 1e-300, 1e-300}) {
+    quickprop.Step(One(slope), w);
+    ASSERT_TRUE(std::isfinite(w(0)));
+  }
+}
+
+TEST(Quickprop, DecayPullsAWeightToZero) {
+  Quickprop quickprop(1, 1, {.epsilon = 0.1, .growth = 2, .decay = 0.5});
+  Eigen::MatrixXd w = One(8);
+  quickprop.Step(One(0), w);
+  EXPECT_DOUBLE_EQ(w(0), 8 - 0.1 * 0.5 * 8);
+}
+
+}  // namespace
+
+namespace {
+
+TEST(SigmoidOutputs, LearnWhatALineDivides) {
+  Eigen::MatrixXd units(5, 3);
+  units << 1, 0, 0, 1, 0, 1, 1, 1, 0, 1, 1, 1, 1, 2, 3;
+  Eigen::MatrixXd targets(5, 1);
+  targets << -0.5, -0.5, -0.5, 0.5, 0.5;  // x + y > 1.5
+  SigmoidOutputs layer{.weights = Eigen::MatrixXd::Zero(3, 1), .values = {}, .errors = {}};
+  OutputOptions options;
+  options.quickprop.epsilon = 10;
+  EXPECT_LT(layer.Train(units, targets, 0.4, options), options.epochs_max);
+  EXPECT_LT(layer.Worst(targets), 0.4);
+}
+
+TEST(SigmoidOutputs, GiveUpWhereNothingChanges) {
+  const Examples exclusive_or = Parity(2);
+  Eigen::MatrixXd units(4, 3);
+  units << Eigen::Vector4d::Ones(), exclusive_or.inputs;
+  SigmoidOutputs layer{.weights = Eigen::MatrixXd::Zero(3, 1), .values = {}, .errors = {}};
+  OutputOptions options;
+  EXPECT_LE(layer.Train(units, exclusive_or.targets, 0.4, options), options.patience + 1);
+  EXPECT_NEAR(layer.Worst(exclusive_or.targets), 0.5, 1e-9);
+}
+
+TEST(SigmoidOutputs, ErrorsAreTheSlopesOfTheSquaredErrorButForTheOffset) {
+  // d/dx of (s(x) - t)^2 / 2 is (s - t) s', by finite differences.
+  constexpr double kX = 0.7, kTarget = 0.5, kStep = 1e-6;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1), target = kTarget * one;
+  const auto half_square = [&](double x) {
+    SigmoidOutputs layer{.weights = x * one, .values = {}, .errors = {}};
+    layer.Evaluate(one, target);
+    return 0.5 * (layer.values - target).squaredNorm();
+  };
+  SigmoidOutputs layer{.weights = kX * one, .values = {}, .errors = {}};
+  layer.Evaluate(one, target);
+  const double slope = (half_square(kX + kStep) - half_square(kX - kStep)) / (2 * kStep);
+  EXPECT_NEAR(layer.errors(0), slope + 0.1 * (layer.values(0) - kTarget), 1e-8);
 }
 
 }  // namespace

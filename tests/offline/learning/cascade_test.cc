@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "daemon/offline/learning/scaling.h"
-#include "daemon/offline/learning/spirals.h"
+#include "daemon/offline/learning/mlp.h"
+#include "daemon/offline/learning/pose_regression.h"
 #include "tests/offline/learning/problems.h"
 
 namespace footing::learning {

@@ -1,10 +1,10 @@
-#include "daemon/offline/learning/least_squares.h"
+#include "daemon/offline/learning/cascade.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::learning {
 namespace {

@@ -4,13 +4,12 @@
 #include <utility>
 
 #include "common/body/kinematics.h"
-#include "common/body/points.h"
+#include "common/virtual/devices/board_cells.h"
+#include "common/virtual/devices/noise.h"
+#include "common/virtual/devices/scene.h"
 #include "common/virtual/people/perform.h"
 #include "common/virtual/people/script.h"
-#include "common/virtual/devices/random.h"
-#include "common/virtual/devices/board_cells.h"
-#include "common/virtual/devices/scene.h"
-#include "daemon/offline/learning/registration.h"
+#include "daemon/offline/learning/own_take.h"
 
 namespace footing::learning {
 namespace {

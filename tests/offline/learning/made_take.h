@@ -4,12 +4,12 @@
 
 #include "common/body/body.h"
 #include "common/virtual/motion/motion.h"
-#include "daemon/offline/learning/recorded_session.h"
+#include "daemon/offline/learning/time_alignment.h"
 
 namespace footing::learning {
 
 /// Somebody who stands in a T-pose, stomps three times, squats and leans
-/// (common/virtual/choreography): the motion as a camera would have it, and what two boards and two
+/// (common/virtual/people): the motion as a camera would have it, and what two boards and two
 /// hand trackers told of it.
 struct MadeTake {
   body::Body body;

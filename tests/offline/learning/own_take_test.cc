@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "common/body/kinematics.h"
-#include "common/body/momentum.h"
-#include "daemon/offline/learning/basis.h"
+#include "daemon/offline/learning/pose_regression.h"
 #include "tests/offline/learning/made_take.h"
 
 namespace footing::learning {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "common/base/units.h"
+#include "common/virtual/devices/board_cells.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/options/load.h"
-#include "common/virtual/devices/ground_reaction.h"
 #include "daemon/offline/learning/time_alignment.h"
 #include "tests/common/virtual/motion/shared_data.h"
 

@@ -1,10 +1,106 @@
-#include "daemon/offline/learning/pose_regression.h"
-
 #include <gtest/gtest.h>
 
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
+#include "daemon/offline/learning/pose_regression.h"
 
 namespace footing::learning {
+namespace {
+
+TEST(ArmRegression, FindsALinearMapAndTheCovarianceOfWhatIsLeft) {
+  constexpr double kNoise = 0.1;
+  noise::Random random(7);
+  Eigen::MatrixXd map = Eigen::MatrixXd::Zero(arms::kDirections, arms::ArmFeatures::kCount);
+  for (Eigen::Index i = 0; i < map.rows(); ++i) {
+    for (Eigen::Index k = 0; k < 5; ++k) map(i, k) = random.Normal();
+  }
+  ArmExamples examples;
+  examples.fold_count = 3;
+  for (int i = 0; i < 3000; ++i) {
+    arms::ArmFeatures::Values features;
+    for (double& value : features) value = random.Normal();
+    const double shared = kNoise * random.Normal();  // Of the first two, so that they are alike.
+    arms::Directions directions = map * features;
+    for (Eigen::Index k = 0; k < directions.size(); ++k) {
+      directions(k) += k < 2 ? shared : kNoise * random.Normal();
+    }
+    examples.features.push_back(features);
+    examples.directions.push_back(directions);
+    examples.folds.push_back(i % 3);
+  }
+  const FittedArm fitted = FitArm(examples);
+  EXPECT_LT(fitted.error, 0.45);  // sqrt(9) times the noise is 0.3.
+  EXPECT_GT(fitted.error, 0.3);
+  EXPECT_GT(fitted.spread, 4);
+  const auto& covariance = fitted.model.covariance;
+  EXPECT_NEAR(covariance(0, 1) / covariance(0, 0), 1, 0.3);
+  EXPECT_NEAR(covariance(4, 5) / covariance(4, 4), 0, 0.2);
+  for (const double variance : covariance.diagonal()) EXPECT_NEAR(variance, 0.013, 0.006);
+
+  arms::ArmFeatures::Values features = examples.features[0];
+  const arms::Directions told = fitted.model.Predict(features);
+  EXPECT_LT((told - map * examples.features[0]).norm(), 0.5);
+
+  model::Model model{.kind = "arm", .provenance = {}, .tensors = {}};
+  AppendTensors(fitted.model, model);
+  const auto read = arms::MakeArmModel(model, "made.fmodel");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  features = examples.features[0];
+  EXPECT_LT((read->Predict(features) - told).norm(), 1e-4);
+}
+
+}  // namespace
+
+namespace {
+
+/// Root position and two angles that move as one, and one of their own.
+Eigen::MatrixXd Poses(int count) {
+  noise::Random random(1);
+  Eigen::MatrixXd poses(6, count);
+  for (int i = 0; i < count; ++i) {
+    const double bend = random.Normal(), twist = 0.1 * random.Normal();
+    poses.col(i) << 0.1, 0, 1 - 0.2 * bend, 0.3 + bend, -0.5 * bend, twist;
+  }
+  return poses;
+}
+
+const std::vector<std::string> kDofs = {"x", "y", "z", "a", "b", "c"};
+
+TEST(MakeBasis, FindsWhatMovesTogetherInTheOrderOfItsVariance) {
+  const PoseBasis basis = MakeBasis(Poses(4000), kDofs);
+  // Scaled (2.5 a metre): (0, 0, -0.5, 1, -0.5, 0) times the bend, of length sqrt(1.5).
+  Eigen::VectorXd expected(6);
+  expected << 0, 0, -0.5, 1, -0.5, 0;
+  EXPECT_LT((basis.components.row(0).transpose() - expected.normalized()).norm(), 0.01);
+  EXPECT_NEAR(basis.variances(0), 1.5, 0.1 * 1.5);
+  EXPECT_NEAR(basis.variances(1), 0.01, 0.1 * 0.01);
+  EXPECT_NEAR(basis.variances.tail(4).sum(), 0, 1e-12);
+  EXPECT_EQ(basis.ComponentsFor(0.9), 1);
+  EXPECT_EQ(basis.ComponentsFor(0.9999), 2);
+}
+
+TEST(MakeBasis, KeepsEveryComponentSoThatAnyPoseCanBeMade) {
+  const PoseBasis basis = MakeBasis(Poses(100), kDofs);
+  EXPECT_TRUE((basis.components * basis.components.transpose()).isIdentity(1e-9));
+  const Eigen::VectorXd pose = Eigen::VectorXd::LinSpaced(6, -1, 2);  // Like none of them.
+  const Eigen::VectorXd along = basis.components * basis.scale.cwiseProduct(pose - basis.mean);
+  const Eigen::VectorXd again =
+      basis.mean + (basis.components.transpose() * along).cwiseQuotient(basis.scale);
+  EXPECT_TRUE(again.isApprox(pose, 1e-9));
+}
+
+TEST(MakeBasis, SaysInItsTensorsWhichColumnIsWhichDof) {
+  model::Model model{.kind = "basis", .provenance = {}, .tensors = {}};
+  const PoseBasis basis = MakeBasis(Poses(100), kDofs);
+  AppendTensors(basis, model);
+  ASSERT_TRUE(model::Check(model, "m").ok());
+  const auto components = model::Find(model, "components", {6, 6}, "m");
+  ASSERT_TRUE(components.ok());
+  EXPECT_EQ((*components)->labels, kDofs);
+  EXPECT_FLOAT_EQ((*components)->values[6 * 1 + 5], static_cast<float>(basis.components(1, 5)));
+}
+
+}  // namespace
+
 namespace {
 
 constexpr int kDof = 6;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::learning {
 

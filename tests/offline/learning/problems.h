@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemon/offline/learning/examples.h"
+#include "daemon/offline/learning/mlp.h"
 
 /// The field's test problems.
 namespace footing::learning {

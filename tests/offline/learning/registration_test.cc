@@ -1,4 +1,4 @@
-#include "daemon/offline/learning/registration.h"
+#include "daemon/offline/learning/own_take.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::learning {
 namespace {

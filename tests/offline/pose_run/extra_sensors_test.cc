@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "common/body/points.h"
+#include "common/body/kinematics.h"
 #include "common/body/skeleton_points.h"
 #include "daemon/offline/pose_run/pose_run.h"
 #include "tests/offline/pose_run/standing.h"

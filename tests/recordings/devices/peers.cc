@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/controller.h"
 #include "daemon/sensor/reports/input_report.h"
 
 namespace footing::recordings {

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "common/virtual/devices/ps_move.h"
 #include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/devices/source.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "daemon/sensor/service/tick_content.h"
+#include "daemon/sensor/service/device.h"
 #include "tests/recordings/devices/capture.h"
 
 namespace footing::recordings {

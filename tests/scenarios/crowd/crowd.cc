@@ -10,10 +10,10 @@
 #include <cstring>
 #include <utility>
 
-#include "common/runtime/clock.h"
-#include "common/net/client_messages.h"
+#include "common/net/client.h"
 #include "common/net/framing.h"
 #include "common/net/socket.h"
+#include "common/runtime/clock.h"
 
 namespace footing::crowd {
 namespace {

@@ -1,9 +1,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/base/text.h"
 #include "common/cli/cli.h"
 #include "common/runtime/clock.h"
-#include "common/base/quantile.h"
 #include "tests/scenarios/crowd/crowd.h"
 
 namespace {

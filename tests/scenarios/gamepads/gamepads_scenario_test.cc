@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "common/runtime/clock.h"
 #include "common/net/client.h"
-#include "common/net/framed_connection.h"
-#include "common/virtual/devices/pro_controller.h"
+#include "common/net/framing.h"
+#include "common/runtime/clock.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
 #include "footing/v1/device.pb.h"
 

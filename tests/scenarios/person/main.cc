@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "clients/stream/body_stage.h"
 #include "clients/stream/dialer.h"
-#include "clients/stream/setup_body.h"
-#include "common/runtime/log.h"
 #include "common/net/address.h"
+#include "common/runtime/log.h"
 
 namespace {
 

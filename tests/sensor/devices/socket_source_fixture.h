@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/net/framed_connection.h"
+#include "common/net/framing.h"
 #include "common/net/socket.h"
 #include "daemon/sensor/devices/socket_source.h"
 #include "footing/v1/device.pb.h"

@@ -4,7 +4,6 @@
 
 #include "common/stream/sensor.h"
 #include "common/virtual/devices/accelerometer.h"
-#include "common/virtual/devices/hand_motion.h"
 #include "daemon/sensor/features/rig_features.h"
 
 namespace footing::features {

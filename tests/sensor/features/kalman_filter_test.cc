@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::signal {
 namespace {

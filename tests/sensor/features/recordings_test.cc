@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "daemon/offline/analysis/features_chain.h"
-#include "daemon/offline/eval/features_input.h"
+#include "daemon/offline/eval/features.h"
 
 /// Real recordings: shaken stretches move, still and slowly tilted ones do not.
 namespace footing::eval {

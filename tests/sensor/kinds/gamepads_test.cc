@@ -2,11 +2,11 @@
 // handshake to its samples.
 #include <gtest/gtest.h>
 
-#include "common/virtual/devices/pro_controller.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
-#include "daemon/sensor/kinds/gamepad.h"
-#include "daemon/sensor/kinds/pro_controller.h"
+#include "daemon/sensor/kinds/decoded.h"
 #include "daemon/sensor/kinds/kind.h"
+#include "daemon/sensor/kinds/pro_controller.h"
 
 namespace footing::kinds {
 namespace {

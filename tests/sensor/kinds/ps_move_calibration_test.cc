@@ -1,4 +1,4 @@
-#include "daemon/sensor/kinds/calibration_handshake.h"
+#include "daemon/sensor/kinds/ps_move.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,6 @@
 #include <functional>
 #include <limits>
 
-#include "daemon/sensor/mounting/exposure_clock.h"
-#include "daemon/sensor/mounting/refusals.h"
-
 namespace footing::hands {
 namespace {
 

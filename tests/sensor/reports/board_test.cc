@@ -1,4 +1,4 @@
-#include "daemon/sensor/reports/board.h"
+#include "daemon/sensor/reports/board_calibration.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

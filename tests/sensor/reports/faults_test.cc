@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
 #include "tests/sensor/reports/fixture.h"
 

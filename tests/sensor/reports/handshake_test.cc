@@ -1,7 +1,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
 #include "tests/sensor/reports/fixture.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/sensor/reports/keep_alive.h"
+#include "daemon/sensor/reports/sequencer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/sensor/service/binding.h"
+#include "daemon/sensor/service/device.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/service/hub.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "daemon/sensor/service/limited_log.h"
+#include "daemon/sensor/service/service.h"
 #include "tests/sensor/service/fixture.h"
 
 namespace footing::sensor {

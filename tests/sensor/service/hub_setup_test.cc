@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
-#include "common/virtual/devices/ps_move.h"
-#include "daemon/sensor/setup/calibration_store.h"
+#include "common/virtual/devices/wiimote.h"
+#include "daemon/sensor/setup/setup_store.h"
 #include "tests/sensor/service/kept.h"
 
 namespace footing::sensor {

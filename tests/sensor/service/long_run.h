@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/base/units.h"
-#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/link_model.h"
 #include "daemon/sensor/service/hub.h"
 #include "tests/sensor/reports/port_model.h"

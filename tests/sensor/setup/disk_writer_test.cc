@@ -1,4 +1,4 @@
-#include "daemon/sensor/setup/disk_writer.h"
+#include "daemon/sensor/setup/state_directory.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <semaphore>
 #include <vector>
 
-#include "common/runtime/run_until.h"
+#include "common/runtime/timer.h"
 
 namespace footing::setup {
 namespace {

@@ -1,14 +1,301 @@
-#include "daemon/simulation/biped/track.h"
-
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <string>
 
-#include "daemon/simulation/biped/box.h"
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
 #include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/track.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::terrain {
+namespace {
+
+stream::Track Build() { return ParseTrack(test::DataFile("tracks/build.json"), "build").value(); }
+
+std::string Why(const stream::Track& track, const NewSegment& segment, int here = 0) {
+  const char* why = WhyNotAppended(track, segment, here);
+  return why != nullptr ? why : "";
+}
+
+TEST(Append, ContinuesTheTrackAtItsEnd) {
+  stream::Track track = Build();
+  const double slope_rad = DegreesToRadians(4), curve_rad = DegreesToRadians(-10);
+  Append({.length_m = 3, .slope_rad = slope_rad, .curve_rad = curve_rad, .step_m = 0.08}, track);
+  Append({.length_m = 2}, track);
+  ASSERT_EQ(track.segments.size(), 6u);
+  EXPECT_EQ(track.revision, 3u);
+  const stream::TrackSegment& slope = track.segments[4];
+  EXPECT_NEAR(slope.start_m.x(), 16, 1e-12);
+  EXPECT_NEAR(slope.start_m.z(), 0.08, 1e-12);
+  EXPECT_NEAR(slope.heading_rad, curve_rad, 1e-12);
+  EXPECT_NEAR(track.segments[5].start_m.z(), 0.08 + 3 * std::sin(slope_rad), 1e-12);
+  EXPECT_NEAR(track.segments[5].heading_rad, curve_rad, 1e-12);
+  EXPECT_EQ(track.segments[5].width_m, 4);
+}
+
+TEST(Append, RefusesWhatIsOutsideTheLimitsAndSaysWhich) {
+  const stream::Track track = Build();
+  const double past = 1e-3;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const struct {
+    NewSegment segment;
+    const char* word;
+  } rows[] = {{{.length_m = 2 - past}, "length"},
+              {{.length_m = 4 + past}, "length"},
+              {{.length_m = nan}, "length"},
+              {{.slope_rad = DegreesToRadians(5) + past}, "slope"},
+              {{.slope_rad = nan}, "slope"},
+              {{.curve_rad = -DegreesToRadians(15) - past}, "curve"},
+              {{.step_m = 0.10 + past}, "step"},
+              {{.step_m = -nan}, "step"},
+              {{.length_m = 1.6, .pit = true}, "pit"},
+              {{.length_m = 0.8, .step_m = 0.05, .pit = true}, "pit"}};
+  for (const auto& row : rows) {
+    EXPECT_NE(Why(track, row.segment).find(row.word), std::string::npos) << row.word;
+  }
+  EXPECT_EQ(Why(track, {.length_m = 4, .slope_rad = DegreesToRadians(-5)}), "");
+  EXPECT_EQ(Why(track, {.length_m = 2, .curve_rad = DegreesToRadians(15), .step_m = 0.10}), "");
+  EXPECT_EQ(Why(track, {.length_m = 0.8, .pit = true}), "");
+}
+
+TEST(Append, RefusesTwoStepsCloserThanAMetre) {
+  stream::Track track = Build();
+  Append({.length_m = 2, .step_m = 0.1}, track);
+  EXPECT_EQ(Why(track, {.step_m = 0.1}), "");  // 2 m apart.
+  // A pit of 0.6 m whose near edge is a step's: the step after it would be 0.6 m from that one.
+  track.segments.back().length_m = 0.6;
+  EXPECT_NE(Why(track, {.step_m = -0.05}).find("1 m apart"), std::string::npos);
+  EXPECT_EQ(Why(track, {.step_m = 0}), "");
+}
+
+TEST(Append, RefusesAPitAfterAPitAndACurveRightBehindOne) {
+  stream::Track track = Build();
+  Append({.length_m = 0.8, .pit = true}, track);
+  EXPECT_NE(Why(track, {.length_m = 0.8, .pit = true}).find("pit"), std::string::npos);
+  EXPECT_NE(Why(track, {.curve_rad = 0.1}).find("curve"), std::string::npos);
+  EXPECT_EQ(Why(track, {}), "");
+}
+
+TEST(Append, RefusesATrackThatRunsIntoItself) {
+  stream::Track track = Build();
+  const NewSegment bend{.length_m = 2.5, .curve_rad = DegreesToRadians(15)};
+  int bends = 0;
+  while (Why(track, bend).empty() && bends < 40) {
+    Append(bend, track);
+    ++bends;
+  }
+  EXPECT_NE(Why(track, bend).find("into itself"), std::string::npos);
+  // A full circle is 24 bends of 15 degrees; the ribbon's width comes before.
+  EXPECT_GT(bends, 15);
+  EXPECT_LT(bends, 24);
+}
+
+TEST(Append, DropsTheOldestOnlyOnceTheCharacterIsFarEnough) {
+  stream::Track track = Build();
+  while (track.segments.size() < kMostSegments) Append({}, track);
+  EXPECT_NE(Why(track, {}, kKeptBehind - 1).find("full"), std::string::npos);
+  EXPECT_EQ(Why(track, {}, kKeptBehind), "");
+  const double second_m = track.segments[1].start_m.x();
+  Append({}, track);
+  EXPECT_EQ(track.segments.size(), kMostSegments);
+  EXPECT_EQ(track.segments[0].start_m.x(), second_m);
+}
+
+TEST(Append, NeedsATrackThatIsMadeForIt) {
+  const auto track = ParseTrack(test::DataFile("tracks/plain.json"), "plain").value();
+  EXPECT_NE(Why(track, {}).find("build"), std::string::npos);
+}
+
+}  // namespace
+
+namespace {
+
+stream::Track Endless() {
+  return ParseTrack(test::DataFile("tracks/endless.json"), "endless").value();
+}
+
+/// A point that moves over an endless track, which continues itself.
+struct Wanderer {
+  stream::Track track = Endless();
+  Eigen::Vector2d p_m = Eigen::Vector2d::Zero(), course = Eigen::Vector2d::Zero();
+  double heading_rad = 0, largest_offset_m = 0;
+
+  /// So far, in steps of 2 cm, with a constant turn.
+  void Go(double distance_m, double turn_radpm = 0) {
+    for (double gone_m = 0; gone_m < distance_m; gone_m += 0.02) {
+      heading_rad += 0.02 * turn_radpm;
+      const Eigen::Vector2d moved_m =
+          0.02 * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
+      p_m += moved_m;
+      FollowCourse(moved_m, course);
+      const TrackPlace place = Locate(track, p_m);
+      largest_offset_m = std::max(largest_offset_m, place.distance_m);
+      if (const auto next = EndlessSegment(track, place, p_m, course)) Add(*next, track);
+    }
+  }
+  double AheadM() const { return LengthOf(track) - LengthTo(track, Locate(track, p_m)); }
+};
+
+TEST(EndlessTrack, LiesAheadOfWhoeverGoesStraight) {
+  Wanderer wanderer;
+  for (int i = 0; i < 100; ++i) {
+    wanderer.Go(5);
+    EXPECT_GE(wanderer.AheadM(), kEndlessAheadM - 0.02);
+    EXPECT_LE(wanderer.AheadM(), kEndlessAheadM + 2.02);
+  }
+  EXPECT_NEAR(wanderer.largest_offset_m, 0, 1e-6);
+}
+
+TEST(EndlessTrack, TurnsWithALastingTurnAndIsNeverFar) {
+  Wanderer wanderer;
+  wanderer.Go(20);
+  wanderer.Go(90, 1.0 / 60);                   // A circle of 60 m radius: 86 degrees.
+  EXPECT_LT(wanderer.largest_offset_m, 3.05);  // Half its width, where it begins again.
+  const double track_rad = wanderer.track.segments.back().heading_rad;
+  EXPECT_NEAR(WrapAngle(track_rad - wanderer.heading_rad), 0, DegreesToRadians(20));
+}
+
+TEST(EndlessTrack, BendsByFifteenDegreesASegmentAtMost) {
+  Wanderer wanderer;
+  wanderer.Go(10);
+  wanderer.Go(30, 0.15);
+  for (std::size_t i = 1; i < wanderer.track.segments.size(); ++i) {
+    const auto& before = wanderer.track.segments[i - 1];
+    const auto& segment = wanderer.track.segments[i];
+    const bool joined = (Following(before).start_m - segment.start_m).norm() < 1e-9;
+    const double turn_rad = std::fabs(WrapAngle(segment.heading_rad - before.heading_rad));
+    EXPECT_TRUE(!joined || turn_rad <= DegreesToRadians(15) + 1e-9) << i;
+  }
+}
+
+TEST(EndlessTrack, BeginsAgainUnderWhoeverLeftIt) {
+  stream::Track track = Endless();
+  const Eigen::Vector2d p_m(4, 10), course(0, 1);
+  const auto next = EndlessSegment(track, Locate(track, p_m), p_m, course);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->start_m.head<2>(), p_m);
+  EXPECT_NEAR(next->heading_rad, kPi / 2, 1e-12);
+  Add(*next, track);
+  EXPECT_FALSE(IsOffRibbon(track, Locate(track, p_m)));
+}
+
+TEST(EndlessTrack, BeginsAgainOnceUnderWhoeverStandsBesideIt) {
+  stream::Track track = Endless();
+  const Eigen::Vector2d p_m(4, 10), no_course = Eigen::Vector2d::Zero();
+  const double heading_rad = track.segments.back().heading_rad;
+  const auto next = EndlessSegment(track, Locate(track, p_m), p_m, no_course);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->start_m.head<2>(), p_m);
+  EXPECT_EQ(next->heading_rad, heading_rad);
+  Add(*next, track);
+  EXPECT_FALSE(IsOffRibbon(track, Locate(track, p_m)));
+}
+
+TEST(EndlessTrack, KeepsSixtyFourSegmentsAndTheDistanceOfThoseThatWent) {
+  Wanderer wanderer;
+  wanderer.Go(500);
+  EXPECT_EQ(wanderer.track.segments.size(), kMostEndlessSegments);
+  EXPECT_NEAR(LengthTo(wanderer.track, Locate(wanderer.track, wanderer.p_m)), 500, 0.03);
+}
+
+TEST(Course, IsTheDirectionOfTheLastTenMetres) {
+  Eigen::Vector2d course(1, 0);
+  for (int i = 0; i < 1000; ++i) FollowCourse({0, 0.01}, course);
+  EXPECT_NEAR(course.x(), std::exp(-1), 0.001);  // Ten metres to the left: a tenfold share of 1/e.
+  EXPECT_NEAR(course.y(), 1 - std::exp(-1), 0.001);
+  FollowCourse({0, 0}, course);
+  EXPECT_TRUE(course.allFinite());
+}
+
+}  // namespace
+
+namespace {
+
+/// Why a track of these segments, with these further keys, is refused; empty when it is not.
+std::string Refusal(const std::string& segments, const std::string& keys = "") {
+  const auto track =
+      ParseTrack(R"({"version": 1, )" + keys + R"("segments": [)" + segments + "]}", "lab.json");
+  return track ? "" : track.error().message;
+}
+
+TEST(TrackFile, HasGroundUnderTheCharacterBeforeTheFirstPit) {
+  EXPECT_EQ(Refusal(R"({"length_m": 2, "pit": true}, {"length_m": 20})"),
+            "lab.json, segment 0: the pit begins 0.00 m from the start of the track, where the "
+            "character stands; put at least 1 m of ground before it");
+  const std::string near =
+      Refusal(R"({"length_m": 0.3, "repeat": 3}, {"length_m": 1, "pit": true}, {"length_m": 20})");
+  EXPECT_NE(near.find("lab.json, segment 1: the pit begins 0.90 m"), std::string::npos) << near;
+  EXPECT_EQ(Refusal(R"({"length_m": 1}, {"length_m": 1, "pit": true}, {"length_m": 20})"), "");
+  // A later pit may follow shorter ground.
+  EXPECT_EQ(Refusal(R"({"length_m": 6}, {"length_m": 1, "pit": true}, {"length_m": 0.5},
+                       {"length_m": 1, "pit": true}, {"length_m": 20})"),
+            "");
+}
+
+TEST(TrackFile, HasItsStartLineOnGroundThatGoesOn) {
+  const char* pit = R"({"length_m": 4}, {"length_m": 2, "pit": true}, {"length_m": 20})";
+  EXPECT_EQ(Refusal(pit, R"("start_m": 5, )"),
+            "lab.json: start_m is 5, in a pit; put the start line on the ground");
+  EXPECT_EQ(Refusal(pit, R"("start_m": 3, )"), "");
+  EXPECT_EQ(Refusal(R"({"length_m": 1.5})", R"("finish_m": 0, )"),
+            "lab.json: the track is 1.50 m long, its start line is at 1 m; at least 1 m of track "
+            "must follow it");
+  EXPECT_EQ(Refusal(R"({"length_m": 2})", R"("finish_m": 0, )"), "");
+}
+
+TEST(TrackFile, IsLongEnoughForItsFinishLine) {
+  EXPECT_EQ(
+      Refusal(R"({"length_m": 6})"),
+      "lab.json: the track is 6.00 m long, too short for a finish line 5 m before its end; make "
+      "it longer than 6 m, or set finish_m");
+  EXPECT_NE(Refusal(R"({"length_m": 0.5})"), "");
+  for (const char* keys : {R"("finish_m": 0, )", R"("finish_m": 4, )", R"("open": true, )",
+                           R"("extendable": true, )", R"("endless": true, )"}) {
+    EXPECT_EQ(Refusal(R"({"length_m": 6})", keys), "") << keys;
+  }
+  EXPECT_EQ(Refusal(R"({"length_m": 6.1})"), "");
+}
+
+TEST(TrackFile, BendsBesideItsPits) {
+  EXPECT_EQ(Refusal(R"({"length_m": 10}, {"length_m": 1, "pit": true, "curve_deg": 30},
+                       {"length_m": 20})"),
+            "lab.json, segment 1: a pit has no curve_deg; put the curve before or after it");
+  EXPECT_EQ(Refusal(R"({"length_m": 10}, {"length_m": 1, "pit": true},
+                       {"length_m": 20, "curve_deg": 30})"),
+            "");
+}
+
+TEST(TrackFile, RefusesNumbersOutOfRangeByName) {
+  for (const char* text :
+       {R"({"version": 1, "segments": [{"length_m": -3}]})", R"({"version": 1, "segments": []})",
+        R"({"version": 2, "segments": [{"length_m": 3}]})",
+        R"({"version": 1, "segments": [{"length_m": 3, "slope_deg": 80}]})", "[1, 2]",
+        R"({"version": 1, "segments": [{"length_m": 3, "repeat": 1001}]})",
+        R"({"version": 1, "segments": [{"length_m": 3, "lenght_m": 3}]})",
+        R"({"version": 1, "help_over_pit": false, "segments": [{"length_m": 3}]})",
+        R"({"version": 1, "start_m": 20, "finish_m": 10, "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 9}, "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 29, "tasks": [{"name": "a", "after": "run"}]},
+            "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 9, "tasks": [{"name": "a", "after": "fly"}]},
+            "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 9, "tasks": [{"name": "a", "before": "run",
+            "after": "run"}]}, "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "endless": true, "segments": [{"length_m": 5, "slope_deg": 1}]})",
+        R"({"version": 1, "endless": true, "extendable": true, "segments": [{"length_m": 5}]})",
+        R"({"version": 1, "extendable": true, "help_over_pits": false,
+            "segments": [{"length_m": 5}]})"}) {
+    const auto track = ParseTrack(text, "bad.json");
+    ASSERT_FALSE(track.ok()) << text;
+    EXPECT_NE(track.error().message.find("bad.json"), std::string::npos);
+  }
+}
+
+}  // namespace
+
 namespace {
 
 constexpr const char* kHills = R"({"version": 1, "name": "hills", "segments": [

@@ -1,12 +1,12 @@
-#include "daemon/simulation/gait/ground_plan.h"
+#include "daemon/simulation/gait/transition.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "common/base/units.h"
-#include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/biped/track.h"
+#include "daemon/simulation/gait/running.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::gait {

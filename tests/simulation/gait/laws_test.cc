@@ -2,12 +2,10 @@
 #include <cmath>
 
 #include "common/base/units.h"
-#include "daemon/simulation/gait/attitude.h"
+#include "daemon/simulation/gait/controller.h"
 #include "daemon/simulation/gait/foothold.h"
-#include "daemon/simulation/gait/frames.h"
-#include "daemon/simulation/gait/momentum.h"
 #include "daemon/simulation/gait/running.h"
-#include "daemon/simulation/gait/servo.h"
+#include "daemon/simulation/gait/targets.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::gait {

@@ -1,8 +1,6 @@
-#include "daemon/simulation/gait_service/effective_config.h"
+#include "daemon/simulation/gait_service/config.h"
 
 #include <gtest/gtest.h>
-
-#include "daemon/simulation/gait_service/engine_files.h"
 
 namespace footing::gait_service {
 namespace {

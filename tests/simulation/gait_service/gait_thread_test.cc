@@ -4,7 +4,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include "common/runtime/data_file.h"
+#include "common/runtime/files.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/serving/simulation_thread.h"
 

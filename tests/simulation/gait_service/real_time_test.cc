@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "daemon/simulation/gait_service/engine_files.h"
+#include "daemon/simulation/gait_service/config.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/gait_service/publish.h"
 #include "daemon/simulation/serving/simulation_thread.h"

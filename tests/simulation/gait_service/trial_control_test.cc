@@ -5,8 +5,8 @@
 
 #include <set>
 
-#include "common/runtime/data_file.h"
-#include "daemon/simulation/gait_service/engine_files.h"
+#include "common/runtime/files.h"
+#include "daemon/simulation/gait_service/config.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/gait_service/publish.h"
 

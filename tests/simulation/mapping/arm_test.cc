@@ -1,7 +1,13 @@
-#include "daemon/simulation/mapping/arm.h"
-
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/virtual/people/person.h"
+#include "daemon/offline/analysis/features_chain.h"
+#include "daemon/simulation/mapping/arm.h"
 #include "tests/simulation/mapping/arm_motion.h"
 #include "tests/simulation/test_world.h"
 
@@ -204,6 +210,177 @@ TEST(ArmMapping, RefusesBordersThatCross) {
   const std::string key = "\"straight_arm_below_deg\": -50.0";
   text.replace(text.find(key), key.size(), "\"straight_arm_below_deg\": -30.0");
   EXPECT_FALSE(ParseArmMapping(text, kArmMappingFile).ok());
+}
+
+}  // namespace
+
+/// The arm interface behind the features of synthetic users whose remotes lie rotated in the hands.
+namespace {
+
+using stream::Gait;
+
+constexpr double kJumpsS = 5;
+
+/// The body and the two remotes of a user, and footingd's chain behind them.
+class ArmUser {
+ public:
+  ArmUser(std::uint64_t seed, double grip_deg)
+      : person_(stream::UserInterface::kArm, StyleOf(seed, grip_deg), seed), random_(seed) {}
+
+  Inputs Advance(double time_s, const users::Intention& wanted) {
+    person_.Advance(time_s, wanted);
+    const std::int64_t now_ns = SecondsToNanoseconds(time_s);
+    for (std::size_t hand = 0; hand < 2; ++hand) {
+      const users::FeltRemote& remote = person_.felt().remotes[hand];
+      const auto reading = wrists::Read(sensor_, remote.specific_force_S_mps2, random_);
+      chain_.Add(hand == 0 ? eval::kLeftDevice : eval::kRightDevice, now_ns,
+                 reading.specific_force_mps2, reading.clipped_axes);
+    }
+    TakeFeatures(chain_.Compute(now_ns), 0, inputs_);
+    return inputs_;
+  }
+
+ private:
+  /// Mirror images of each other.
+  static users::Style StyleOf(std::uint64_t seed, double grip_deg) {
+    users::Style style = users::DrawStyle(seed);
+    style.left_grip_rad = DegreesToRadians(grip_deg);
+    style.right_grip_rad = -style.left_grip_rad;
+    return style;
+  }
+
+  users::Person person_;
+  noise::Random random_;
+  wrists::SensorModel sensor_;
+  eval::Chain chain_{true};
+  Inputs inputs_;
+};
+
+/// What a user does who stands, walks, and jumps.
+users::Intention WantedAt(double time_s) {
+  if (time_s < 1) return {};
+  if (time_s < kJumpsS) return {.gait = Gait::kWalk, .effort = 0.5};
+  return {.gait = Gait::kJump, .effort = 0.5};
+}
+
+/// How long after the motion of the jump begins it is commanded; negative: before.
+double SecondsToTheJump(std::uint64_t seed, double grip_deg) {
+  ArmUser user(seed, grip_deg);
+  ArmInterface arm(ParseArmMapping(test::DataFile(kArmMappingFile), kArmMappingFile).value());
+  for (int tick = 1; tick <= 800; ++tick) {
+    const double time_s = 0.01 * tick;
+    const auto command = arm.Advance(time_s, user.Advance(time_s, WantedAt(time_s)));
+    if (command.gait == Gait::kJump) return time_s - kJumpsS;
+  }
+  return INFINITY;
+}
+
+TEST(ArmGrip, MirroredGripsDelayNoJumpOutOfAWalk) {
+  double straight_s = 0, mirrored_s = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const double grip_deg : {-45.0, 0.0, 45.0}) {
+      const double jump_s = SecondsToTheJump(seed, grip_deg);
+      EXPECT_GT(jump_s, 0) << seed << ", grips of " << grip_deg << " degrees";
+      (grip_deg == 0 ? straight_s : mirrored_s) += grip_deg == 0 ? jump_s : jump_s / 2;
+    }
+  }
+  // A quarter of a cycle of these walks.
+  EXPECT_NEAR(mirrored_s / 3, straight_s / 3, 0.2);
+}
+
+}  // namespace
+
+namespace {
+
+/// The same rotation every 10 ms, for `seconds` from `from_s`.
+void Go(NeutralGrip& grip, double from_s, double seconds, double rotation_deg) {
+  for (int i = 0; i < 100 * seconds; ++i) {
+    grip.Stride(from_s + 0.01 * i, DegreesToRadians(rotation_deg), 0.8);
+  }
+}
+
+double TwistDegrees(const NeutralGrip& grip, double rotation_deg) {
+  return RadiansToDegrees(grip.TwistOf(DegreesToRadians(rotation_deg)).value());
+}
+
+TEST(NeutralGrip, WithoutARestItIsTheMeanOfTheFirstCycleAndNotKnownBefore) {
+  NeutralGrip grip;
+  Go(grip, 0, 1.2, 45);  // A cycle at 0.8 Hz takes 1.25 s.
+  EXPECT_FALSE(grip.known());
+  EXPECT_FALSE(grip.TwistOf(0));
+  Go(grip, 1.2, 0.1, 45);
+  ASSERT_TRUE(grip.known());
+  EXPECT_NEAR(TwistDegrees(grip, 80), 35, 1e-9);
+}
+
+TEST(NeutralGrip, StridesThatWereTooFewDoNotCount) {
+  NeutralGrip grip;
+  Go(grip, 0, 1, -45);
+  grip.Rest();
+  Go(grip, 2, 1, 45);
+  EXPECT_FALSE(grip.known());
+  Go(grip, 3, 0.5, 45);
+  EXPECT_NEAR(TwistDegrees(grip, 45), 0, 1e-9);
+  grip.Rest();
+  EXPECT_TRUE(grip.known());
+}
+
+TEST(NeutralGrip, ATwistNeverBecomesTheNeutralHoweverLongItLasts) {
+  NeutralGrip grip;
+  Go(grip, 0, 3, 10);
+  Go(grip, 3, 120, 35);
+  EXPECT_NEAR(TwistDegrees(grip, 35), 25, 1e-9);
+}
+
+TEST(NeutralGrip, FollowsAGripThatSlips) {
+  NeutralGrip grip;
+  for (int second = 0; second < 300; ++second) Go(grip, second, 1, 0.1 * second);
+  EXPECT_LT(std::fabs(TwistDegrees(grip, 30)), 5);  // 0.1 degrees a second, with a lag of 30 s.
+}
+
+/// Arms that hang still at the same rotation, every 10 ms.
+void Hang(NeutralGrip& grip, double from_s, double seconds, double rotation_deg) {
+  for (int i = 0; i < 100 * seconds; ++i) {
+    grip.Hang(from_s + 0.01 * i, DegreesToRadians(rotation_deg));
+  }
+}
+
+TEST(NeutralGrip, ArmsThatHungStillShowItBeforeTheFirstStrideWhichMayTurn) {
+  NeutralGrip grip;
+  Hang(grip, 0, 0.6, 30);
+  Go(grip, 0.7, 5, 66);  // A twist of 36 degrees from the first stride on.
+  EXPECT_NEAR(TwistDegrees(grip, 66), 36, 1e-9);
+}
+
+TEST(NeutralGrip, TheLastMomentOfARestIsAMotionThatBegins) {
+  NeutralGrip grip;
+  Hang(grip, 0, 0.6, 30);
+  Hang(grip, 0.6, 0.19, 45);
+  Go(grip, 0.79, 1, 66);
+  EXPECT_NEAR(TwistDegrees(grip, 66), 36, 1e-9);
+}
+
+TEST(NeutralGrip, IsRenewedByTheRestThatGoesOnElseByWhatComes) {
+  NeutralGrip grip;
+  Hang(grip, 0, 1, 10);
+  Go(grip, 1, 3, 10);
+  Hang(grip, 4, 1, 40);
+  EXPECT_NEAR(TwistDegrees(grip, 40), 30, 1e-9);
+  grip.Renew();
+  EXPECT_NEAR(TwistDegrees(grip, 40), 0, 1e-9);
+  Go(grip, 5, 3, 40);
+  grip.Renew();
+  EXPECT_FALSE(grip.known());
+  Go(grip, 8, 2, -20);
+  EXPECT_NEAR(TwistDegrees(grip, -20), 0, 1e-9);
+}
+
+TEST(NeutralGrip, LaterRestsDoNotCount) {
+  NeutralGrip grip;
+  Hang(grip, 0, 1, 10);
+  Go(grip, 1, 3, 10);
+  Hang(grip, 4, 3, 46);
+  EXPECT_NEAR(TwistDegrees(grip, 46), 36, 1e-9);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 #include "daemon/simulation/mapping/inputs.h"
 
 namespace footing::mapping {

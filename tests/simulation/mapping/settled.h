@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemon/simulation/biped/command.h"
+#include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/mapping/inputs.h"
 
 namespace footing::mapping {

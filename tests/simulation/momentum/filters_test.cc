@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 #include "daemon/simulation/momentum/foot_contact.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
 #include "daemon/simulation/momentum/linear_filter.h"

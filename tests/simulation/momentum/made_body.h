@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 

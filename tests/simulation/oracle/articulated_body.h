@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "daemon/simulation/biped/parameters.h"
+#include "daemon/simulation/biped/model.h"
 #include "daemon/simulation/biped/world.h"
 
 /// A second engine for the same biped, to judge the first one by: Featherstone's articulated-body

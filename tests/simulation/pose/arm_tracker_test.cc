@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "common/body/kinematics.h"
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
-#include "daemon/simulation/pose/arm_geometry.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/devices/noise.h"
+#include "daemon/simulation/pose/arm_model.h"
 #include "tests/simulation/allocations.h"
 
 namespace footing::arms {

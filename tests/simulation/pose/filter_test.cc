@@ -1,4 +1,4 @@
-#include "daemon/simulation/pose/filter.h"
+#include "daemon/simulation/pose/inertial_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,17 +1,152 @@
-#include "daemon/simulation/pose/hand_attitude.h"
-
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
+#include "daemon/simulation/pose/hand_attitude.h"
 
 namespace footing::arms {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTickS = 0.01;
+const Vector3d kUp(0, 0, kStandardGravityMps2);
+
+/// A level device that rests, with this bias of its gyroscope.
+void Rest(AttitudeFilter& filter, double seconds, const Vector3d& bias) {
+  for (int i = 0; i < std::lround(seconds / kTickS); ++i)
+    filter.Advance({.specific_force_S_mps2 = kUp, .angular_velocity_S_radps = bias}, kTickS);
+}
+
+double LeanDeg(const AttitudeFilter& filter) {
+  return RadiansToDegrees(std::acos(std::clamp(filter.R_WS()(2, 2), -1.0, 1.0)));
+}
+
+TEST(AttitudeFilter, StartsLevelWithXForward) {
+  AttitudeFilter filter;
+  // Pitched nose down by 0.3 rad: up is forward and up in S.
+  filter.Start(kStandardGravityMps2 * Vector3d(-std::sin(0.3), 0, std::cos(0.3)), Vector3d::Zero(),
+               0);
+  const Eigen::Matrix3d expected = Eigen::AngleAxisd(0.3, Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_LT((filter.R_WS() - expected).norm(), 1e-12);
+}
+
+TEST(AttitudeFilter, LearnsTheBiasOfAllAxesAtRest) {
+  const Vector3d bias(0.01, -0.008, 0.006);
+  AttitudeFilter filter;
+  filter.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.5));
+  Rest(filter, 20, bias);
+  EXPECT_TRUE(filter.resting());
+  EXPECT_LT((filter.bias_S_radps() - bias).norm(), 5e-4);
+  AttitudeFilter without({.bias_in_rest = false, .bias_in_motion = false});
+  without.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.5));
+  Rest(without, 20, bias);
+  EXPECT_EQ(without.bias_S_radps(), Vector3d::Zero());
+}
+
+/// A MotionPlus that nobody calibrated is some 16 degrees/s off.
+TEST(AttitudeFilter, KeepsALargeBiasThatItStartsWith) {
+  const Vector3d bias(0.2, -0.1, 0.28);
+  AttitudeFilter filter;
+  filter.Start(kUp, bias, DegreesToRadians(0.1));
+  Rest(filter, 20, bias + Vector3d(0, 0, 0.002));
+  EXPECT_TRUE(filter.resting());
+  EXPECT_LT((filter.bias_S_radps() - bias).norm(), 0.003);
+  const Eigen::Matrix3d R = filter.R_WS();
+  EXPECT_LT(RadiansToDegrees(std::abs(std::atan2(R(1, 0), R(0, 0)))), 1);
+}
+
+TEST(AttitudeFilter, LearnsALevelBiasInMotionFromItsCorrections) {
+  // Swung to and fro about the vertical, so it never rests; the bias is about x and y.
+  const Vector3d bias(0.01, -0.008, 0);
+  const auto swing = [&](AttitudeFilter& filter) {
+    filter.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.5));
+    for (int i = 0; i < 6000; ++i) {
+      const double rate = 0.5 * std::cos(2 * kPi * i * kTickS);
+      filter.Advance(
+          {.specific_force_S_mps2 = kUp, .angular_velocity_S_radps = Vector3d(0, 0, rate) + bias},
+          kTickS);
+    }
+  };
+  AttitudeFilter learns, without({.bias_in_motion = false});
+  swing(learns);
+  swing(without);
+  EXPECT_LT((learns.bias_S_radps() - bias).norm(), 0.3 * bias.norm());
+  EXPECT_LT(LeanDeg(learns), 0.5 * LeanDeg(without));
+}
+
+TEST(AttitudeFilter, LearnsAGainInMotionFromItsCorrections) {
+  // Whole turns about a level axis: 2 % too much of them is a lean of 7 degrees a turn.
+  const auto turn = [](AttitudeFilter& filter) {
+    filter.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.03));
+    double sum = 0;
+    for (int i = 0; i < 9000; ++i) {
+      const double rate = 3 * std::sin(0.1 * kPi * i * kTickS);
+      const double angle = 30 / kPi * (1 - std::cos(0.1 * kPi * (i + 0.5) * kTickS));
+      const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix();
+      filter.Advance({.specific_force_S_mps2 = R.transpose() * kUp,
+                      .angular_velocity_S_radps = Vector3d(1.02 * rate, 0, 0)},
+                     kTickS);
+      const Vector3d up = filter.R_WS().transpose() * Vector3d::UnitZ();
+      sum += std::acos(std::clamp(up.dot(R.transpose() * Vector3d::UnitZ()), -1.0, 1.0));
+    }
+    return sum / 9000;
+  };
+  AttitudeFilter learns, without({.gain_in_motion = false});
+  const double lean = turn(learns);
+  EXPECT_LT(lean, 0.7 * turn(without));
+  EXPECT_NEAR(learns.gain_errors().x(), 0.02, 0.01);
+  EXPECT_EQ(without.gain_errors(), Vector3d::Zero());
+}
+
+TEST(AttitudeFilter, TakesNoSlowTurnForABias) {
+  // 4 degrees/s about the vertical is no bias of a gyroscope.
+  AttitudeFilter filter;
+  filter.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.5));
+  Rest(filter, 20, {0, 0, DegreesToRadians(4)});
+  EXPECT_LT(filter.bias_S_radps().norm(), DegreesToRadians(0.1));
+}
+
+TEST(AttitudeFilter, StaysWhereItIsWhileClipped) {
+  AttitudeFilter filter, unfrozen({.frozen_s = 0});
+  for (AttitudeFilter* const one : {&filter, &unfrozen}) {
+    one->Start(kUp, Vector3d::Zero(), 0);
+    for (int i = 0; i < 100; ++i) {
+      one->Advance({.specific_force_S_mps2 = kUp + Vector3d(35, 0, 0), .clipped = true}, kTickS);
+    }
+  }
+  EXPECT_LT(LeanDeg(filter), 0.01);
+  EXPECT_GT(LeanDeg(unfrozen), 5);
+  EXPECT_GT(filter.inclination_sd_rad(), 0);
+}
+
+TEST(AttitudeFilter, ReportsAHeadingThatGetsLessCertain) {
+  AttitudeFilter filter;
+  filter.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.1));
+  double last = 0;
+  for (int minute = 1; minute <= 3; ++minute) {
+    for (int i = 0; i < 6000; ++i) {  // In motion: a bias about the vertical is not seen.
+      const double rate = std::cos(2 * kPi * i * kTickS);
+      filter.Advance({.specific_force_S_mps2 = kUp, .angular_velocity_S_radps = {0, 0, rate}},
+                     kTickS);
+    }
+    EXPECT_GT(filter.heading_sd_rad(), last);
+    last = filter.heading_sd_rad();
+  }
+  // 0.1 degrees/s for three minutes, and what a bias moves meanwhile.
+  EXPECT_GT(last, DegreesToRadians(18));
+  EXPECT_LT(last, DegreesToRadians(60));
+  EXPECT_LT(filter.inclination_sd_rad(), DegreesToRadians(1));
+}
+
+}  // namespace
+
 namespace {
 
 constexpr double kStepS = 0.01;

@@ -5,7 +5,7 @@
 
 #include "common/body/body.h"
 #include "common/body/landmarks.h"
-#include "daemon/simulation/pose/basis.h"
+#include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/pose/targets.h"
 
 namespace footing::pose {

@@ -1,4 +1,4 @@
-#include "daemon/simulation/pose/measured_terms.h"
+#include "daemon/simulation/pose/targets.h"
 
 #include <gtest/gtest.h>
 

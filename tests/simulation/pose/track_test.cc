@@ -1,4 +1,4 @@
-#include "daemon/simulation/pose/track.h"
+#include "daemon/simulation/pose/inertial_track.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <functional>
 #include <optional>
 
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::inertial {
 namespace {

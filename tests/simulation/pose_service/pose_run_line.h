@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "daemon/simulation/pose_service/pose_applied.h"
+#include "daemon/simulation/pose_service/pose_line.h"
 #include "daemon/simulation/pose_service/pose_run.h"
 #include "tests/simulation/reconstruction/made_person.h"
 

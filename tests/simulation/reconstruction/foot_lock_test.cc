@@ -1,4 +1,4 @@
-#include "daemon/simulation/reconstruction/foot_lock.h"
+#include "daemon/simulation/reconstruction/report.h"
 
 #include <gtest/gtest.h>
 

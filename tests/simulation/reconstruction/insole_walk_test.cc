@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "common/base/units.h"
-#include "daemon/simulation/reconstruction/step_pattern.h"
 #include "tests/simulation/reconstruction/made_person.h"
 
 namespace footing::reconstruction {

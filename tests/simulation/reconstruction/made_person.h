@@ -6,10 +6,9 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/virtual/motion/motion.h"
-#include "common/virtual/devices/random.h"
 #include "common/virtual/devices/board_cells.h"
-#include "common/virtual/devices/ground_reaction.h"
+#include "common/virtual/devices/noise.h"
+#include "common/virtual/motion/motion.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::reconstruction {

@@ -5,8 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "common/virtual/camera/random_scene.h"
-#include "common/virtual/camera/yuyv.h"
+#include "common/virtual/camera/scene.h"
 
 namespace footing::virtual_camera {
 namespace {

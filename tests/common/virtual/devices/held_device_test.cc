@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/body/kinematics.h"
-#include "common/body/points.h"
 #include "common/base/units.h"
+#include "common/body/kinematics.h"
 
 namespace footing::virtual_sensors {
 namespace {

@@ -4,9 +4,8 @@
 #include <random>
 
 #include "common/base/units.h"
-#include "common/virtual/devices/random.h"
 #include "common/virtual/devices/accelerometer.h"
-#include "common/virtual/devices/hand_motion.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::wrists {
 namespace {

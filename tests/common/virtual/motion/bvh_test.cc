@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "common/base/units.h"
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/base/units.h"
-#include "common/virtual/devices/random.h"
+#include "common/virtual/devices/noise.h"
 
 namespace footing::motion {
 namespace {

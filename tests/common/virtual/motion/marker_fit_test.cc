@@ -2,16 +2,14 @@
 
 #include <gmock/gmock.h>
 
-#include "common/body/body.h"
-#include "common/body/fit.h"
-#include "common/body/momentum.h"
 #include "common/base/units.h"
-#include "common/virtual/motion/c3d.h"
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/devices/noise.h"
 #include "common/virtual/motion/edit.h"
-#include "common/virtual/motion/joint_centres.h"
+#include "common/virtual/motion/markers.h"
+#include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
-#include "common/virtual/motion/trc.h"
-#include "common/virtual/devices/random.h"
 #include "tests/common/virtual/motion/shared_data.h"
 
 namespace footing::motion {

@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "common/body/body.h"
-#include "common/body/kinematics.h"
 #include "common/base/rotation.h"
 #include "common/base/units.h"
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/virtual/devices/noise.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/options/load.h"
-#include "common/virtual/devices/random.h"
 #include "tests/common/virtual/motion/shared_data.h"
 
 namespace footing::motion {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/base/units.h"
-#include "common/virtual/people/grip.h"
+#include "common/virtual/people/style.h"
 
 namespace footing::users {
 namespace {

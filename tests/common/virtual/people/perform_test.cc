@@ -7,9 +7,8 @@
 #include <map>
 #include <string>
 
-#include "common/body/kinematics.h"
 #include "common/base/units.h"
-#include "common/virtual/people/posture.h"
+#include "common/body/kinematics.h"
 #include "common/virtual/devices/board_cells.h"
 #include "common/virtual/devices/scene.h"
 

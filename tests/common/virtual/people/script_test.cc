@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
-#include "common/virtual/people/course.h"
 
 namespace footing::choreography {
 namespace {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "clients/view/render/paint.h"
+#include "clients/view/scene/model.h"
+
+namespace footing::render {
+
+/// Where a study's session stands, for its experimenter; takes its height off `space`.
+void DrawStudyPanel(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
+
+/// What the participant of a study reads between trials, in the middle of `space`; beside what
+/// matters more, at its top, whose height it then takes off `space`. `pose`: the first character;
+/// null: there is none.
+void DrawParticipantPanel(const Paint& paint, const scene::Model& model,
+                          const scene::CharacterPose* pose, std::int64_t now_ns, Box& space);
+
+/// Both boards from above, where they lie, forward up: the load of each cell, the COP of each foot
+/// and of both, the trace of the last seconds, and the COM.
+void DrawLayoutPanel(const Paint& paint, const Box& box, const scene::Model& model,
+                     const scene::CharacterPose& pose, std::int64_t now_ns);
+
+}  // namespace footing::render
