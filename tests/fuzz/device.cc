@@ -1,4 +1,5 @@
 #include <deque>
+#include <memory>
 
 #include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/kinds/kind.h"
@@ -16,9 +17,10 @@ class Conversation {
  public:
   explicit Conversation(std::uint8_t how)
       : wiimote_(how, {.tr = (how & 1) != 0, .motion_plus_inside = (how & 2) != 0}),
-        kind_({.handshake = {.motion_plus = (how & 4) == 0, .camera = (how & 8) != 0}},
-              {wiimote_.identity().vendor, wiimote_.identity().product, wiimote_.identity().name},
-              {}) {}
+        kind_(kinds::MakeKind(
+            {.handshake = {.motion_plus = (how & 4) == 0, .camera = (how & 8) != 0}},
+            {wiimote_.identity().vendor, wiimote_.identity().product, wiimote_.identity().name},
+            {})) {}
 
   void Step(Input& input) {
     const std::uint8_t what = input.Byte();
@@ -39,14 +41,14 @@ class Conversation {
         return;
       }
       case 6:
-        (void)kind_.SetCamera((what & 16) != 0);
-        (void)kind_.SetSphere(input.Byte());
+        (void)kind_->SetCamera((what & 16) != 0);
+        (void)kind_->SetSphere(input.Byte());
         return;
       case 7:
-        (void)kind_.RequestStatus(now_ns_);
+        (void)kind_->RequestStatus(now_ns_);
         return;
       case 8:
-        return kind_.Restart();
+        return kind_->Restart();
       case 9:  // Nothing comes for a while.
         now_ns_ += input.Byte() * std::int64_t{50'000'000};
         return;
@@ -73,19 +75,19 @@ class Conversation {
       for (; lost > 0 && !reports_.empty(); --lost) reports_.pop_front();
       kinds::Outputs outputs;
       for (; !reports_.empty(); reports_.pop_front()) {
-        (void)kind_.Take(now_ns_, reports_.front(), outputs);
+        (void)kind_->Take(now_ns_, reports_.front(), outputs);
       }
-      kind_.Advance(now_ns_, outputs);
+      kind_->Advance(now_ns_, outputs);
       Expect(outputs.size() <= 16);
       for (const auto& output : outputs) Queue(wiimote_.HandleOutput(now_ns_, output));
-      Expect(kind_.Note(now_ns_).size() < 500);
+      Expect(kind_->Note(now_ns_).size() < 500);
       stream::DeviceStatus status;
-      kind_.AddTo(status);
+      kind_->AddTo(status);
     }
   }
 
   virtual_devices::Wiimote wiimote_;
-  kinds::Kind kind_;
+  std::unique_ptr<kinds::Kind> kind_;
   std::deque<virtual_devices::Report> reports_;
   std::int64_t now_ns_ = 1'000'000'000;
   int samples_ = 0;

@@ -8,6 +8,7 @@
 #include "common/base/units.h"
 #include "common/board/geometry.h"
 #include "daemon/sensor/kinds/decoded.h"
+#include "daemon/sensor/kinds/wiimote_protocol.h"
 #include "daemon/sensor/reports/board_calibration.h"
 #include "daemon/sensor/reports/input_report.h"
 #include "daemon/sensor/reports/sequencer.h"
@@ -51,12 +52,8 @@ class Decoder {
 
 /// A Balance Board. It has the Wiimote's product id: its name or what answers at its port says what
 /// it is.
-class BalanceBoard {
+class BalanceBoard : public kinds::Speaker {
  public:
-  static constexpr stream::DeviceKind kKind = stream::DeviceKind::kBalanceBoard;
-  static constexpr decode::Placement kPlacement = decode::Placement::kUnderFeet;
-  /// As recorded on a good link.
-  static constexpr decode::Timing kTiming = {1 / 83.6, 1 / 60.0};
   static constexpr handshake::Block kBlocks[] = {
       {reports::Space::kRegisters, calibration::kBoardBlockAddress, calibration::kBoardBlockBytes},
       {reports::Space::kRegisters, calibration::kBoardTemperatureAddress,
@@ -67,25 +64,23 @@ class BalanceBoard {
     return product.name.find("RVL-WBC") != std::string::npos;
   }
 
-  BalanceBoard(const decode::KindOptions& options, handshake::HandshakeSequencer sequencer)
-      : sequencer_(std::move(sequencer)),
-        local_gravity_mps2_(options.local_gravity_mps2),
-        decoder_(local_gravity_mps2_) {}
+  explicit BalanceBoard(const decode::KindOptions& options)
+      : local_gravity_mps2_(options.local_gravity_mps2), decoder_(local_gravity_mps2_) {}
 
-  handshake::HandshakeSequencer& sequencer() { return sequencer_; }
-  const handshake::HandshakeSequencer& sequencer() const { return sequencer_; }
-  /// A new uninterrupted stream begins.
-  void Restart() { decoder_ = Decoder(local_gravity_mps2_); }
-  decode::Decoded Take(const reports::InputReport& report);
-  /// The sequencer advanced: the calibration blocks may be there now.
-  void TakeBlocks();
-  const calibration::BoardCalibration& calibration() const { return calibration_; }
+  stream::DeviceKind kind() const override { return stream::DeviceKind::kBalanceBoard; }
+  decode::Placement placement() const override { return decode::Placement::kUnderFeet; }
+  /// As recorded on a good link.
+  decode::Timing timing() const override { return {1 / 83.6, 1 / 60.0}; }
 
-  void AddTo(stream::DeviceStatus& status) const;
-  std::string Note() const;
+  void Restart() override { decoder_ = Decoder(local_gravity_mps2_); }
+  void TakeBlocks(const handshake::HandshakeSequencer& sequencer) override;
+  decode::Decoded Take(const handshake::HandshakeSequencer& sequencer,
+                       const reports::InputReport& report) override;
+  void AddTo(const handshake::HandshakeSequencer& sequencer,
+             stream::DeviceStatus& status) const override;
+  std::string Note() const override;
 
  private:
-  handshake::HandshakeSequencer sequencer_;
   double local_gravity_mps2_;
   bool has_blocks_ = false;
   calibration::BoardCalibration calibration_ = calibration::DefaultBoard();

@@ -1,18 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "daemon/sensor/kinds/balance_board.h"
 #include "daemon/sensor/kinds/decoded.h"
-#include "daemon/sensor/kinds/pro_controller.h"
-#include "daemon/sensor/kinds/ps_move.h"
-#include "daemon/sensor/kinds/wiimote.h"
 #include "daemon/sensor/reports/outbox.h"
+#include "daemon/sensor/reports/sequencer.h"
 
 namespace footing::kinds {
 
@@ -20,65 +16,61 @@ using Outputs = handshake::HandshakeSequencer::Outputs;
 /// A calibration read at an earlier time, if any.
 using Stored = std::optional<std::vector<std::uint8_t>>;
 
-/// Every kind of device that footingd knows. The first whose Matches() is true takes a device.
-///
-/// Each has kKind, kPlacement, kTiming, Matches, Take, AddTo (its part of the status) and Note; one
-/// that speaks the Wiimote's protocol also a kPlan and a sequencer(). What only some can do (a
-/// sphere, a camera, a calibration in feature reports, a second link) is a member that only they
-/// have.
-using Alternatives = std::variant<balance_board::BalanceBoard, pro_controller::ProController,
-                                  ps_move::PsMove, wiimote::Wiimote>;
-
-/// The plans of all kinds that speak the Wiimote's protocol.
-std::span<const handshake::Plan* const> Plans();
-
-/// One device as what it is. What answers at its port may show that it is of another kind. A plain
-/// value.
+/// One device as the kind that it is: from its reports to samples in SI units, and from wishes to
+/// its reports. The defaults suit a device that only sends samples; a kind overrides what it has
+/// beyond that (a sphere, a camera, a calibration in feature reports, a second link). Pure: time is
+/// an argument, reports come and go as bytes. Docs: docs/devices.md#to-add-a-kind-of-device.
 class Kind {
  public:
-  Kind(const decode::KindOptions& options, const decode::Product& product, const Stored& stored);
+  virtual ~Kind() = default;
 
-  stream::DeviceKind kind() const;
-  decode::Placement placement() const;
-  decode::Timing timing() const;
+  virtual stream::DeviceKind kind() const = 0;
+  virtual decode::Placement placement() const = 0;
+  /// Typical intervals, before they are estimated.
+  virtual decode::Timing timing() const = 0;
   /// Samples may be published: kind and calibration are settled.
-  bool live() const;
+  virtual bool live() const = 0;
 
   /// A new uninterrupted stream begins.
-  void Restart();
-  void Advance(std::int64_t now_ns, Outputs& outputs);
-  /// The samples of one input report, if any; none when it makes no sense.
-  std::optional<decode::Decoded> Take(std::int64_t received_ns, reports::Bytes report,
-                                      Outputs& outputs);
+  virtual void Restart() {}
+  /// Time passes: appends the reports to be sent. Call at least every 10 ms.
+  virtual void Advance(std::int64_t /*now_ns*/, Outputs& /*outputs*/) {}
+  /// The samples of one input report, if any; none when it makes no sense. Appends the reports to
+  /// be sent.
+  virtual std::optional<decode::Decoded> Take(std::int64_t received_ns, reports::Bytes report,
+                                              Outputs& outputs) = 0;
   /// The next report to write, if one is due.
-  std::optional<reports::OutputReport> NextOutput(std::int64_t now_ns, link::Outbox& outbox);
-  reports::OutputReport MotorOff() const;
+  virtual std::optional<reports::OutputReport> NextOutput(std::int64_t now_ns,
+                                                          link::Outbox& outbox) {
+    return outbox.Next(now_ns);
+  }
+  virtual reports::OutputReport MotorOff() const { return reports::RumbleOnly(); }
 
-  bool has_second_link() const;
-  void TakeSecondLink();
-  std::optional<decode::FeatureRequest> NextFeature(std::int64_t now_ns);
+  virtual bool has_second_link() const { return false; }
+  /// The device appeared on its second link.
+  virtual void TakeSecondLink() {}
+  virtual std::optional<decode::FeatureRequest> NextFeature(std::int64_t /*now_ns*/) { return {}; }
   /// A whole calibration to be stored, when this feature report completed it.
-  Stored TakeFeature(reports::Bytes feature);
+  virtual Stored TakeFeature(reports::Bytes /*feature*/) { return {}; }
 
-  bool has_lamps() const;
-  /// False for kinds that do not have it.
-  bool SetSphere(std::uint32_t rgb);
-  bool SetCamera(bool on);
-  bool RequestStatus(std::int64_t now_ns);
+  /// Each of these is false for kinds that do not have it.
+  virtual bool SetSphere(std::uint32_t /*rgb*/) { return false; }
+  virtual bool SetCamera(bool /*on*/) { return false; }
+  virtual bool RequestStatus(std::int64_t /*now_ns*/) { return false; }
 
-  void AddTo(stream::DeviceStatus& status) const;
+  /// The handshake of a device that speaks the Wiimote's protocol; else null.
+  virtual const handshake::HandshakeSequencer* sequencer() const { return nullptr; }
+  bool has_lamps() const { return sequencer() != nullptr; }
+
+  /// Fills in the kind's part of the status.
+  virtual void AddTo(stream::DeviceStatus& status) const { status.kind = kind(); }
   /// What is wrong and what to do, for a person; empty when all is well.
-  std::string Note(std::int64_t now_ns) const;
-
-  const Alternatives& alternatives() const { return alternatives_; }
-  /// Null for a kind that does not speak the Wiimote's protocol.
-  const handshake::HandshakeSequencer* sequencer() const;
-
- private:
-  void FollowPlan();
-
-  decode::KindOptions options_;
-  Alternatives alternatives_;
+  virtual std::string Note(std::int64_t now_ns) const = 0;
 };
+
+/// The kind of a device by how it presents itself. What answers at the port of one that speaks the
+/// Wiimote's protocol may show later that it is another.
+std::unique_ptr<Kind> MakeKind(const decode::KindOptions& options, const decode::Product& product,
+                               const Stored& stored);
 
 }  // namespace footing::kinds

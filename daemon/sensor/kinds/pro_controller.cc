@@ -59,12 +59,14 @@ decode::Decoded Decoder::Take(reports::Bytes extension) {
   return decoded;
 }
 
-decode::Decoded ProController::Take(const reports::InputReport& report) {
+decode::Decoded ProController::Take(const handshake::HandshakeSequencer&,
+                                    const reports::InputReport& report) {
   const auto* data = std::get_if<reports::Data>(&report.body);
   return data == nullptr ? decode::Decoded() : decoder_.Take(data->extension());
 }
 
-void ProController::AddTo(stream::DeviceStatus& status) const {
+void ProController::AddTo(const handshake::HandshakeSequencer&,
+                          stream::DeviceStatus& status) const {
   status.battery_fraction = decoder_.battery_fraction();
   status.battery_low = status.battery_fraction >= 0 && status.battery_fraction < kLowBattery;
 }

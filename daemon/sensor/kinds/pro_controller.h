@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "daemon/sensor/kinds/decoded.h"
+#include "daemon/sensor/kinds/wiimote_protocol.h"
 #include "daemon/sensor/reports/input_report.h"
 #include "daemon/sensor/reports/sequencer.h"
 
@@ -43,31 +43,27 @@ class Decoder {
 
 /// A Wii U Pro Controller: a gamepad that speaks the Wiimote's protocol, with the product id of a
 /// Wiimote -TR. Its name or what answers at its port says what it is.
-class ProController {
+class ProController : public kinds::Speaker {
  public:
-  static constexpr stream::DeviceKind kKind = stream::DeviceKind::kProController;
-  static constexpr decode::Placement kPlacement = decode::Placement::kInBothHands;
-  static constexpr decode::Timing kTiming = {0.01, 0.01};
   static constexpr handshake::Plan kPlan = {false, 0x34, {0x01, 0x20}};
 
   static bool Matches(const decode::Product& product) {
     return product.name.find("RVL-CNT-01-UC") != std::string::npos;
   }
 
-  ProController(const decode::KindOptions&, handshake::HandshakeSequencer sequencer)
-      : sequencer_(std::move(sequencer)) {}
+  explicit ProController(const decode::KindOptions&) {}
 
-  handshake::HandshakeSequencer& sequencer() { return sequencer_; }
-  const handshake::HandshakeSequencer& sequencer() const { return sequencer_; }
-  /// A new uninterrupted stream begins.
-  void Restart() { decoder_ = Decoder(); }
-  decode::Decoded Take(const reports::InputReport& report);
+  stream::DeviceKind kind() const override { return stream::DeviceKind::kProController; }
+  decode::Placement placement() const override { return decode::Placement::kInBothHands; }
+  decode::Timing timing() const override { return {0.01, 0.01}; }
 
-  void AddTo(stream::DeviceStatus& status) const;
-  std::string Note() const { return ""; }
+  void Restart() override { decoder_ = Decoder(); }
+  decode::Decoded Take(const handshake::HandshakeSequencer& sequencer,
+                       const reports::InputReport& report) override;
+  void AddTo(const handshake::HandshakeSequencer& sequencer,
+             stream::DeviceStatus& status) const override;
 
  private:
-  handshake::HandshakeSequencer sequencer_;
   Decoder decoder_;
 };
 

@@ -148,7 +148,7 @@ PsMove::PsMove(const decode::Product& product,
                const std::optional<std::vector<std::uint8_t>>& stored)
     : handshake_(ModelOf(product), stored), decoder_(ModelOf(product)) {}
 
-std::optional<decode::Decoded> PsMove::Take(reports::Bytes report) {
+std::optional<decode::Decoded> PsMove::Take(std::int64_t, reports::Bytes report, kinds::Outputs&) {
   if (!live()) return decode::Decoded();
   return decoder_.Take(handshake_.calibration(), report);
 }
@@ -159,12 +159,18 @@ std::optional<decode::FeatureRequest> PsMove::NextFeature(std::int64_t now_ns) {
                                 reports::kMoveCalibrationFeatureBytes};
 }
 
-std::optional<std::vector<std::uint8_t>> PsMove::TakeFeature(reports::Bytes feature) {
+kinds::Stored PsMove::TakeFeature(reports::Bytes feature) {
   if (!handshake_.TakeFeature(feature)) return std::nullopt;
   return handshake_.blob();
 }
 
+bool PsMove::SetSphere(std::uint32_t rgb) {
+  handshake_.set_sphere(rgb);
+  return true;
+}
+
 void PsMove::AddTo(stream::DeviceStatus& status) const {
+  Kind::AddTo(status);
   status.calibration = status.gyroscope_calibration = handshake_.calibration().origin;
   status.battery_fraction = decoder_.battery_fraction();
   status.battery_low = status.battery_fraction >= 0 && status.battery_fraction < kLowBattery;

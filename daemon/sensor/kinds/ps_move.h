@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/sensor/kinds/decoded.h"
+#include "daemon/sensor/kinds/kind.h"
 #include "daemon/sensor/reports/move_calibration.h"
 #include "daemon/sensor/reports/move_report.h"
 
@@ -82,36 +83,38 @@ class Decoder {
 };
 
 /// A PS Move. It may be on two links at once: Bluetooth carries the samples, USB the calibration.
-class PsMove {
+class PsMove : public kinds::Kind {
  public:
-  static constexpr stream::DeviceKind kKind = stream::DeviceKind::kPsMove;
-  static constexpr decode::Placement kPlacement = decode::Placement::kOnBody;
-  static constexpr decode::Timing kTiming = {1 / 88.0, 1 / 88.0};  // psmoveapi.
-  static constexpr bool kHasSecondLink = true;
-
   static bool Matches(const decode::Product& product);
 
   /// `stored`: a calibration read at an earlier time, if any.
   PsMove(const decode::Product& product, const std::optional<std::vector<std::uint8_t>>& stored);
 
-  bool live() const { return handshake_.live(); }
-  /// None when the report is not one of this model's.
-  std::optional<decode::Decoded> Take(reports::Bytes report);
+  stream::DeviceKind kind() const override { return stream::DeviceKind::kPsMove; }
+  decode::Placement placement() const override { return decode::Placement::kOnBody; }
+  decode::Timing timing() const override { return {1 / 88.0, 1 / 88.0}; }  // psmoveapi.
+  bool live() const override { return handshake_.live(); }
+
+  std::optional<decode::Decoded> Take(std::int64_t received_ns, reports::Bytes report,
+                                      kinds::Outputs& outputs) override;
   /// The report of lights and motor, when it is due.
-  std::optional<reports::OutputReport> NextOutput(std::int64_t now_ns, bool rumble) {
-    return handshake_.NextOutput(now_ns, rumble);
+  std::optional<reports::OutputReport> NextOutput(std::int64_t now_ns,
+                                                  link::Outbox& outbox) override {
+    return handshake_.NextOutput(now_ns, outbox.rumble());
   }
-  static reports::OutputReport MotorOff() { return reports::MoveLights(0, 0); }
+  reports::OutputReport MotorOff() const override { return reports::MoveLights(0, 0); }
 
-  /// It appeared on a second link, where its calibration may be readable.
-  void TakeSecondLink() { handshake_.AskAgain(); }
-  std::optional<decode::FeatureRequest> NextFeature(std::int64_t now_ns);
-  /// The whole calibration, when this piece completed one to be stored.
-  std::optional<std::vector<std::uint8_t>> TakeFeature(reports::Bytes feature);
+  bool has_second_link() const override { return true; }
+  /// Its calibration may be readable there.
+  void TakeSecondLink() override { handshake_.AskAgain(); }
+  std::optional<decode::FeatureRequest> NextFeature(std::int64_t now_ns) override;
+  kinds::Stored TakeFeature(reports::Bytes feature) override;
 
-  void SetSphere(std::uint32_t rgb) { handshake_.set_sphere(rgb); }
-  void AddTo(stream::DeviceStatus& status) const;
-  std::string Note() const { return handshake_.calibration().problem; }
+  bool SetSphere(std::uint32_t rgb) override;
+  void AddTo(stream::DeviceStatus& status) const override;
+  std::string Note(std::int64_t /*now_ns*/) const override {
+    return handshake_.calibration().problem;
+  }
 
  private:
   CalibrationHandshake handshake_;

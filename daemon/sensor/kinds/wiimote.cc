@@ -138,22 +138,24 @@ Decoded Decoder::TakeButtons(std::uint16_t buttons) {
   return decoded;
 }
 
-decode::Decoded Wiimote::Take(const reports::InputReport& report) {
-  const handshake::ExtensionPort& port = sequencer_.port();
-  const Setup setup = {
-      sequencer_.acceleration(), port.nunchuk, sequencer_.motion_plus().calibration,
-      port.ready() ? sequencer_.extension() : stream::Extension::kUnspecified, port.epoch()};
+decode::Decoded Wiimote::Take(const handshake::HandshakeSequencer& sequencer,
+                              const reports::InputReport& report) {
+  const handshake::ExtensionPort& port = sequencer.port();
+  const Setup setup = {sequencer.acceleration(), port.nunchuk, sequencer.motion_plus().calibration,
+                       port.ready() ? sequencer.extension() : stream::Extension::kUnspecified,
+                       port.epoch()};
   return decoder_.Take(setup, report);
 }
 
-void Wiimote::AddTo(stream::DeviceStatus& status) const {
-  status.calibration = sequencer_.acceleration_origin();
-  status.extension_calibration = sequencer_.extension_origin();
-  status.gyroscope_calibration = sequencer_.gyroscope_origin();
-  status.extension_changes = sequencer_.port().changes();
-  if (!sequencer_.status()) return;
-  status.battery_low = sequencer_.status()->battery_low;
-  status.battery_fraction = reports::BatteryFraction(sequencer_.status()->battery);
+void Wiimote::AddTo(const handshake::HandshakeSequencer& sequencer,
+                    stream::DeviceStatus& status) const {
+  status.calibration = sequencer.acceleration_origin();
+  status.extension_calibration = sequencer.extension_origin();
+  status.gyroscope_calibration = sequencer.gyroscope_origin();
+  status.extension_changes = sequencer.port().changes();
+  if (!sequencer.status()) return;
+  status.battery_low = sequencer.status()->battery_low;
+  status.battery_fraction = reports::BatteryFraction(sequencer.status()->battery);
 }
 
 }  // namespace footing::wiimote

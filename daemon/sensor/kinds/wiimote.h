@@ -7,6 +7,7 @@
 
 #include "common/stream/device.h"
 #include "daemon/sensor/kinds/decoded.h"
+#include "daemon/sensor/kinds/wiimote_protocol.h"
 #include "daemon/sensor/reports/input_report.h"
 #include "daemon/sensor/reports/sequencer.h"
 #include "daemon/sensor/reports/wiimote_calibration.h"
@@ -51,30 +52,26 @@ class Decoder {
 
 /// A Wiimote and what is plugged into it. Of the devices that speak its protocol it is the one that
 /// nothing else is recognised by.
-class Wiimote {
+class Wiimote : public kinds::Speaker {
  public:
-  static constexpr stream::DeviceKind kKind = stream::DeviceKind::kWiimote;
-  static constexpr decode::Placement kPlacement = decode::Placement::kOnBody;
-  static constexpr decode::Timing kTiming = {0.01, 0.01};
   static constexpr handshake::Plan kPlan = {true, 0x31};
 
   static bool Matches(const decode::Product&) { return true; }
 
-  Wiimote(const decode::KindOptions&, handshake::HandshakeSequencer sequencer)
-      : sequencer_(std::move(sequencer)) {}
+  explicit Wiimote(const decode::KindOptions&) {}
 
-  handshake::HandshakeSequencer& sequencer() { return sequencer_; }
-  const handshake::HandshakeSequencer& sequencer() const { return sequencer_; }
-  /// A new uninterrupted stream begins.
-  void Restart() { decoder_ = Decoder(); }
-  decode::Decoded Take(const reports::InputReport& report);
+  stream::DeviceKind kind() const override { return stream::DeviceKind::kWiimote; }
+  decode::Placement placement() const override { return decode::Placement::kOnBody; }
+  decode::Timing timing() const override { return {0.01, 0.01}; }
+  bool has_camera() const override { return true; }
 
-  void SetCamera(bool on) { sequencer_.SetCamera(on); }
-  void AddTo(stream::DeviceStatus& status) const;
-  std::string Note() const { return ""; }
+  void Restart() override { decoder_ = Decoder(); }
+  decode::Decoded Take(const handshake::HandshakeSequencer& sequencer,
+                       const reports::InputReport& report) override;
+  void AddTo(const handshake::HandshakeSequencer& sequencer,
+             stream::DeviceStatus& status) const override;
 
  private:
-  handshake::HandshakeSequencer sequencer_;
   Decoder decoder_;
 };
 

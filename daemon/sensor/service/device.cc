@@ -127,9 +127,9 @@ std::int64_t SampleTiming::HalfEarlierNs(std::int64_t before_ns) const {
 void Device::Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity,
                     const Stored& stored) {
   links_.Attach(handle, identity);
-  kind_ = kinds::Kind(options_.kind, {identity.vendor, identity.product, identity.name}, stored);
+  kind_ =
+      kinds::MakeKind(options_.kind, {identity.vendor, identity.product, identity.name}, stored);
   stored_calibration_ = stored.value_or(std::vector<std::uint8_t>());
-  fresh_calibration_.reset();
   outputs_.clear();
   ShowBinding();
   Restart();
@@ -150,9 +150,9 @@ void Device::ShowBinding() {
 
 /// Everything that belongs to one uninterrupted stream.
 void Device::Restart() {
-  timing_.Restart(kind_.timing());
+  timing_.Restart(kind_->timing());
   outbox_ = link::Outbox();
-  kind_.Restart();
+  kind_->Restart();
   motion_ = MotionChain();
   chain_.Restart();
   mounted_sensor_.Restart();
@@ -162,12 +162,12 @@ void Device::Restart() {
 
 void Device::AttachSecond(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
   if (links_.AttachSecond(handle, identity)) Restart();
-  kind_.TakeSecondLink();
+  kind_->TakeSecondLink();
 }
 
 void Device::SetLeds(std::uint8_t leds) {
   leds_ = leds & 0x0f;
-  if (kind_.has_lamps()) outbox_.Push(reports::SetLeds(leds_));
+  if (kind_->has_lamps()) outbox_.Push(reports::SetLeds(leds_));
 }
 
 void Device::PushOutputs() {
@@ -177,44 +177,47 @@ void Device::PushOutputs() {
 
 void Device::Advance(std::int64_t now_ns) {
   if (!attached()) return;
-  kind_.Advance(now_ns, outputs_);
+  kind_->Advance(now_ns, outputs_);
   PushOutputs();
-  if (kind_.live() && !leds_set_) {
+  if (kind_->live() && !leds_set_) {
     leds_set_ = true;
     SetLeds(leds_);
   }
 }
 
 std::optional<reports::OutputReport> Device::NextOutput(std::int64_t now_ns) {
-  return attached() ? kind_.NextOutput(now_ns, outbox_) : std::nullopt;
+  return attached() ? kind_->NextOutput(now_ns, outbox_) : std::nullopt;
 }
 
 std::optional<decode::FeatureRequest> Device::NextFeature(std::int64_t now_ns) {
-  return attached() ? kind_.NextFeature(now_ns) : std::nullopt;
+  return attached() ? kind_->NextFeature(now_ns) : std::nullopt;
 }
 
-Device::Stored Device::TakeFreshCalibration() { return std::exchange(fresh_calibration_, {}); }
-
-void Device::Take(devices::DeviceHandle handle, const devices::IncomingReport& report,
-                  TickContent& content) {
+Device::Taken Device::Take(devices::DeviceHandle handle, const devices::IncomingReport& report,
+                           TickContent& content) {
+  Taken taken;
   if (handle == links_.handle()) {
     counters_.queue_drops = report.dropped;
     counters_.writes_failed = report.writes_failed;
   }
   if (report.feature) {
-    if (auto whole = kind_.TakeFeature(report.bytes)) fresh_calibration_ = std::move(whole);
-    return;
+    taken.calibration = kind_->TakeFeature(report.bytes);
+    return taken;
   }
-  if (handle != links_.handle()) return;
+  if (handle != links_.handle()) return taken;
   const stream::DeviceKind before = kind();
-  auto decoded = kind_.Take(report.received_ns, report.bytes, outputs_);
+  auto decoded = kind_->Take(report.received_ns, report.bytes, outputs_);
   PushOutputs();
-  if (kind() != before) timing_.Restart(kind_.timing());
+  taken.other_kind = kind() != before;
+  if (taken.other_kind) timing_.Restart(kind_->timing());
+  const std::size_t motion_before = content.motion.size();
   if (!decoded) {
     ++counters_.undecodable;
   } else if (!decoded->empty()) {
     TakeDecoded(report, *decoded, content);
   }
+  taken.motion = std::span(content.motion).subspan(motion_before);
+  return taken;
 }
 
 bool Device::HasSpace(const TickContent& content) {
@@ -302,11 +305,11 @@ stream::DeviceStatus Device::Status(std::int64_t now_ns, double stale_after_s) c
   status.queue_drops = counters_.queue_drops;
   status.writes_failed = counters_.writes_failed;
   status.rumble = outbox_.rumble();
-  if (kind_.has_lamps()) status.leds = leds_;
+  if (kind_->has_lamps()) status.leds = leds_;
   status.last_report_ns = timing_.statistics().last_ns();
   status.tared = chain_.tared() && placement() == decode::Placement::kUnderFeet;
   status.mounted = mounted_sensor_.rotation_MS().has_value();
-  kind_.AddTo(status);
+  kind_->AddTo(status);
   if (status.calibration == stream::CalibrationOrigin::kStored) {
     status.stored_calibration = stored_calibration_;
   }
@@ -327,10 +330,10 @@ void Device::AddState(std::int64_t now_ns, double stale_after_s,
   status.jitter_ms = link.JitterMs();
   const double clock_sd_s = timing_.sampled_sd_s();
   status.clock_offset_sd_ms = clock_sd_s < 0 ? -1 : clock_sd_s * 1e3;
-  status.state = !kind_.live()              ? stream::DeviceState::kConnecting
+  status.state = !kind_->live()             ? stream::DeviceState::kConnecting
                  : silent_s > stale_after_s ? stream::DeviceState::kStale
                                             : stream::DeviceState::kLive;
-  status.note = kind_.Note(now_ns);
+  status.note = kind_->Note(now_ns);
   if (status.note.empty() && counters_.flooded > 0) {
     status.note = std::to_string(counters_.flooded) + " samples dropped: it sends too many";
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -150,21 +152,24 @@ class Device {
     links_.Detach(handle, reason);
   }
 
+  /// What one report brought besides what it added to the tick.
+  struct Taken {
+    std::span<const stream::MotionSample> motion;  ///< Its samples, in the tick.
+    bool other_kind = false;                       ///< The device proved to be of another kind.
+    Stored calibration;                            ///< To be stored.
+  };
   /// Decodes one report; samples go to `content`.
-  void Take(devices::DeviceHandle handle, const devices::IncomingReport& report,
-            TickContent& content);
+  Taken Take(devices::DeviceHandle handle, const devices::IncomingReport& report,
+             TickContent& content);
   /// Time passes: handshake and motor.
   void Advance(std::int64_t now_ns);
   /// The next report to write to handle(), if one is due.
   std::optional<reports::OutputReport> NextOutput(std::int64_t now_ns);
   /// The report that switches the motor off at once.
-  reports::OutputReport MotorOff() const { return kind_.MotorOff(); }
+  reports::OutputReport MotorOff() const { return kind_->MotorOff(); }
   /// The feature report to ask feature_handle() for now, if any.
   std::optional<decode::FeatureRequest> NextFeature(std::int64_t now_ns);
   devices::DeviceHandle feature_handle() const { return links_.feature_handle(); }
-  /// A calibration blob that was just read from the device, to be stored by its serial; once.
-  Stored TakeFreshCalibration();
-
   stream::DeviceStatus Status(std::int64_t now_ns, double stale_after_s) const;
 
   std::uint32_t number() const { return number_; }
@@ -173,17 +178,17 @@ class Device {
   bool Owns(devices::DeviceHandle handle) const { return links_.Owns(handle); }
   const devices::DeviceIdentity& identity() const { return links_.identity(); }
   bool simulated() const { return identity().simulated; }
-  stream::DeviceKind kind() const { return kind_.kind(); }
-  decode::Placement placement() const { return kind_.placement(); }
-  bool has_second_link() const { return kind_.has_second_link(); }
+  stream::DeviceKind kind() const { return kind_->kind(); }
+  decode::Placement placement() const { return kind_->placement(); }
+  bool has_second_link() const { return kind_->has_second_link(); }
   link::Outbox& outbox() { return outbox_; }
   void SetLeds(std::uint8_t leds);
   /// False for devices without a sphere.
-  bool SetSphere(std::uint32_t rgb) { return kind_.SetSphere(rgb); }
+  bool SetSphere(std::uint32_t rgb) { return kind_->SetSphere(rgb); }
   /// False for devices without a camera.
-  bool SetCamera(bool on) { return kind_.SetCamera(on); }
+  bool SetCamera(bool on) { return kind_->SetCamera(on); }
   /// Asks for the status report; false when that is too soon or it has none.
-  bool RequestStatus(std::int64_t now_ns) { return kind_.RequestStatus(now_ns); }
+  bool RequestStatus(std::int64_t now_ns) { return kind_->RequestStatus(now_ns); }
 
   const Binding& binding() const { return binding_; }
   /// The lamps show the role from now on; without one, the device's number.
@@ -223,9 +228,8 @@ class Device {
   DeviceOptions options_;
   Links links_;
   Binding binding_;
-  kinds::Kind kind_{{}, {}, {}};
+  std::unique_ptr<kinds::Kind> kind_ = kinds::MakeKind({}, {}, {});
   kinds::Outputs outputs_;
-  Stored fresh_calibration_;
   std::vector<std::uint8_t> stored_calibration_;  ///< As it was when the device attached.
   link::Outbox outbox_;
   SampleTiming timing_;

@@ -96,15 +96,13 @@ void Hub::OnReport(devices::DeviceHandle handle, const devices::IncomingReport& 
   Device* device = Find(handle);
   if (device == nullptr) return;
   TakeRaw(*device, report.received_ns, report.bytes, false, report.true_ns, report.feature);
-  const stream::DeviceKind kind = device->kind();
-  const std::size_t before = content_.motion.size();
-  device->Take(handle, report, content_);
-  if (const auto fresh = device->TakeFreshCalibration(); fresh && ports_.save_calibration) {
-    ports_.save_calibration(device->identity().serial, *fresh);
+  const Device::Taken taken = device->Take(handle, report, content_);
+  if (taken.calibration && ports_.save_calibration) {
+    ports_.save_calibration(device->identity().serial, *taken.calibration);
   }
-  if (device->kind() != kind) Bind(*device);
-  for (std::size_t i = before; i < content_.motion.size(); ++i) {
-    AddToRig(*device, device->mounted_sensor().Take(content_.motion[i]));
+  if (taken.other_kind) Bind(*device);
+  for (const stream::MotionSample& sample : taken.motion) {
+    AddToRig(*device, device->mounted_sensor().Take(sample));
   }
   Flush(*device);
 }

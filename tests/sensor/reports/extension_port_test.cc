@@ -105,23 +105,23 @@ TEST(ExtensionPort, AMotionPlusThatIsSwitchedOffNowAndThenComesBack) {
 TEST(ExtensionPort, WithoutTheConfigAMotionPlusIsLeftAlone) {
   decode::KindOptions options;
   options.handshake.motion_plus = false;
-  kinds::Kind kind(options, {0, 0, "Nintendo RVL-CNT-01"}, {});
+  const auto kind = kinds::MakeKind(options, {0, 0, "Nintendo RVL-CNT-01"}, {});
   PortModel model(Child::kNone, true);
   for (int i = 1; i < 3000; ++i) {
     kinds::Outputs outputs;
-    kind.Advance(i * 10'000'000LL, outputs);
+    kind->Advance(i * 10'000'000LL, outputs);
     if (auto report = model.Sample()) {
-      (void)kind.Take(i * 10'000'000LL, *report, outputs);
+      (void)kind->Take(i * 10'000'000LL, *report, outputs);
     }
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       const auto output = outputs[k];
       EXPECT_FALSE(output[0] == 0x16 && output[2] == 0xa6);
       for (auto& answer : model.HandleOutput(output)) {
-        (void)kind.Take(i * 10'000'000LL, answer, outputs);
+        (void)kind->Take(i * 10'000'000LL, answer, outputs);
       }
     }
   }
-  EXPECT_TRUE(kind.live());
+  EXPECT_TRUE(kind->live());
   EXPECT_FALSE(model.active());
 }
 

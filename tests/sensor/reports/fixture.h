@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ template <typename Device>
 class Conversation {
  public:
   Conversation(Device device, const std::string& name)
-      : device_(std::move(device)), kind_({}, {0, 0, name}, {}) {}
+      : device_(std::move(device)), kind_(kinds::MakeKind({}, {0, 0, name}, {})) {}
 
   /// What the host sends and what arrives from the device may be changed or dropped (false).
   std::function<bool(reports::OutputReport&)> on_output;
@@ -28,7 +29,7 @@ class Conversation {
     for (int step = 0; step < static_cast<int>(seconds / kStepS); ++step) {
       now_ns_ += static_cast<std::int64_t>(kStepS * 1e9);
       kinds::Outputs outputs;
-      kind_.Advance(now_ns_, outputs);
+      kind_->Advance(now_ns_, outputs);
       for (auto& output : outputs) Send(output);
       if (!sample) continue;
       if (auto report = sample(device_)) Receive(*report);
@@ -38,21 +39,21 @@ class Conversation {
   void Receive(virtual_devices::Report report) {
     if (on_input && !on_input(report)) return;
     kinds::Outputs outputs;
-    (void)kind_.Take(now_ns_, report, outputs);
+    (void)kind_->Take(now_ns_, report, outputs);
     for (auto& output : outputs) Send(output);
   }
 
   /// Time passes unseen, as in a suspension.
   void Jump(double seconds) { now_ns_ += static_cast<std::int64_t>(seconds * 1e9); }
 
-  const HandshakeSequencer& handshake() const { return *kind_.sequencer(); }
-  kinds::Kind& kind() { return kind_; }
+  const HandshakeSequencer& handshake() const { return *kind_->sequencer(); }
+  kinds::Kind& kind() { return *kind_; }
   stream::DeviceStatus status() const {
     stream::DeviceStatus status;
-    kind_.AddTo(status);
+    kind_->AddTo(status);
     return status;
   }
-  std::string Note() const { return kind_.Note(now_ns_); }
+  std::string Note() const { return kind_->Note(now_ns_); }
   Device& device() { return device_; }
   std::int64_t now_ns() const { return now_ns_; }
   /// Everything sent to the device, by id.
@@ -72,7 +73,7 @@ class Conversation {
   }
 
   Device device_;
-  kinds::Kind kind_;
+  std::unique_ptr<kinds::Kind> kind_;
   std::vector<reports::OutputReport> sent_;
   std::int64_t now_ns_ = 0;
 };

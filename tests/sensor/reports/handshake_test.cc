@@ -3,6 +3,7 @@
 
 #include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/wiimote.h"
+#include "daemon/sensor/reports/board_calibration.h"
 #include "tests/sensor/reports/fixture.h"
 
 namespace footing::handshake {
@@ -51,10 +52,11 @@ TEST(Handshake, ABoardIsLiveWithItsOwnCalibrationEvenWithoutAName) {
     EXPECT_EQ(talk.kind().kind(), DeviceKind::kBalanceBoard);
     EXPECT_EQ(talk.handshake().mode(), 0x34);
     EXPECT_EQ(talk.status().calibration, CalibrationOrigin::kDevice);
+    const auto& blocks = talk.handshake().blocks();
+    const auto calibration = calibration::ParseBoard(blocks.at(0), blocks.at(1));
     for (std::size_t corner = 0; corner < 4; ++corner) {
       for (std::size_t point = 0; point < 3; ++point) {
-        const auto& board = std::get<balance_board::BalanceBoard>(talk.kind().alternatives());
-        EXPECT_EQ(board.calibration().counts[point][corner], talk.device().points()[corner][point]);
+        EXPECT_EQ(calibration.counts[point][corner], talk.device().points()[corner][point]);
       }
     }
   }
