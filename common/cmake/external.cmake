@@ -55,6 +55,7 @@ set(EXTERNAL_udev PkgConfig::libudev)
 set(EXTERNAL_systemd PkgConfig::systemd)
 set(EXTERNAL_mujoco mujoco::mujoco)
 set(EXTERNAL_zlib ZLIB::ZLIB)
+set(EXTERNAL_crypto OpenSSL::Crypto)  # Digests: pure, unlike what speaks TLS.
 set(EXTERNAL_openssl OpenSSL::SSL)
 set(EXTERNAL_cli11 footing_cli11)
 set(EXTERNAL_qrencode PkgConfig::qrencode)
@@ -66,7 +67,7 @@ set(EXTERNAL_threads Threads::Threads)
 set(EXTERNAL_benchmark benchmark::benchmark)
 # MuJoCo is pure in the sense meant here: the same state and inputs give the same bits.
 # zlib is named for its CRC-32 only.
-set(EXTERNAL_PURE boost_math eigen json mujoco qrencode zlib)
+set(EXTERNAL_PURE boost_math crypto eigen json mujoco qrencode zlib)
 
 add_library(footing_cli11 INTERFACE)
 target_include_directories(footing_cli11 SYSTEM INTERFACE ${CLI11_INCLUDE})

@@ -13,7 +13,7 @@ namespace footing::model {
 
 using Digest = std::array<std::uint8_t, 32>;
 
-/// SHA-256 of the bytes (FIPS 180-4, section 6.2): distinguishes a damaged file from a whole one,
+/// SHA-256 of the bytes: distinguishes a damaged file from a whole one,
 /// and one data file from another.
 Digest Sha256(std::string_view bytes);
 

@@ -26,6 +26,7 @@ EXTERNAL = [
     (re.compile(r"^hidapi"), {"hidapi"}),
     (re.compile(r"^mujoco/"), {"mujoco"}),
     (re.compile(r"^zlib\.h$"), {"zlib"}),
+    (re.compile(r"^openssl/evp"), {"crypto", "openssl"}),
     (re.compile(r"^openssl/"), {"openssl"}),
     (re.compile(r"^qrencode\.h$"), {"qrencode"}),
     (re.compile(r"^CLI/"), {"cli11"}),
