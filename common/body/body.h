@@ -42,7 +42,7 @@ struct SegmentParameters {
   double longitudinal_radius;  ///< and the long axis.
 };
 
-/// Of one sex, or the mean of both. Masses sum to 1 with the limbs counted twice.
+/// Parameters of one sex, or the mean of both. Masses sum to 1 with the limbs counted twice.
 SegmentParameters Parameters(Segment segment, Sex sex);
 
 /// Centre of mass of a part of the trunk over the line from mid-hip (0) to mid-shoulder (1), and
@@ -57,7 +57,7 @@ double StatureOfLengths(Sex sex);
 /// Mid-hip to mid-shoulder over standing height.
 double TrunkOfStature(Sex sex);
 
-/// What moves rigidly with one joint's frame.
+/// Mass that moves rigidly with one joint's frame.
 struct JointMass {
   double mass_kg = 0;
   Eigen::Vector3d com_J = Eigen::Vector3d::Zero();      ///< m.

@@ -18,7 +18,7 @@ struct Kinematics {
 
   std::vector<Eigen::Matrix3d> R_WJ;
   std::vector<Eigen::Vector3d> p_WJ;    ///< m.
-  std::vector<Eigen::Vector3d> axis_W;  ///< Of each degree of freedom: the axis of its motion.
+  std::vector<Eigen::Vector3d> axis_W;  ///< Axis of motion of each degree of freedom.
 };
 
 /// Velocities of all joints' frames, of their origins.
@@ -106,7 +106,7 @@ struct PointTarget {
 
 struct FitOptions {
   int iterations = 10;  ///< At most.
-  /// What it costs a coordinate to be away from `neutral`, against the points: m/rad (of the root's
+  /// Cost for a coordinate to be away from `neutral`, against the points: m/rad (of the root's
   /// position: 1). Coordinates that no point shows go there. Null: 0.01 each.
   const Eigen::VectorXd* hold = nullptr;
   const Eigen::VectorXd* neutral = nullptr;  ///< Null: the pose at the start.
@@ -131,7 +131,7 @@ class PoseFit {
     double points = 0;   ///< Cost of the points, m².
     double cost = 0;     ///< The same and what holds the coordinates.
     double gain = 0;     ///< By which the last step lowered the cost.
-    double damping = 0;  ///< Of the next step, relative to H's diagonal.
+    double damping = 0;  ///< For the next step, relative to H's diagonal.
   };
 
   void SetHold(const FitOptions& options, const Eigen::Ref<const Eigen::VectorXd>& q);

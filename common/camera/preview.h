@@ -10,7 +10,7 @@
 #include "common/base/result.h"
 #include "common/stream/device.h"
 
-/// What footing-camera sees, for a person: reduced pictures with what was found in them. Its bytes
+/// Preview of footing-camera for a person: reduced pictures with what was found in them. Its bytes
 /// are in docs/camera.md.
 namespace footing::preview {
 
@@ -43,7 +43,7 @@ struct RefusedLight {
 };
 
 struct Picture {
-  std::uint64_t number = 0;     ///< Of the frame since the program's start.
+  std::uint64_t number = 0;     ///< Number of the frame since the program's start.
   std::int64_t exposed_ns = 0;  ///< The host's monotonic clock.
   int camera_width = 0, camera_height = 0;
   bool has_pose = false;   ///< The camera file says where the camera stands.
@@ -54,7 +54,7 @@ struct Picture {
   std::vector<std::uint8_t> rgb;  ///< Rows from the top, three bytes a pixel.
 };
 
-inline constexpr int kMaxSide = 1024;  ///< Of a picture, pixels.
+inline constexpr int kMaxSide = 1024;  ///< Longest side of a picture, pixels.
 inline constexpr std::size_t kMaxSpheres = 16, kMaxRefused = 64;
 inline constexpr std::size_t kMaxText = 512;
 inline constexpr std::size_t kHeaderBytes = 12;

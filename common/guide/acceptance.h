@@ -19,7 +19,7 @@ enum class Phase { kStill, kWalk, kRun, kJump, kQuiet, kLean, kStepping, kRumble
 
 const char* Name(Phase phase);
 std::optional<Phase> PhaseNamed(const std::string& name);
-/// What the person is asked to do.
+/// Instruction for the person.
 std::string Prompt(Phase phase);
 
 struct Planned {
