@@ -27,7 +27,7 @@ struct Channel {
   std::string units;
 };
 
-/// What one tracking system measured: a device, or the simulation.
+/// Measurements of one tracking system: a device, or the simulation.
 struct MotionTable {
   std::string tracksys;      ///< Letters and digits.
   std::string manufacturer;  ///< Kind of the device; "Footing" for the simulation.
@@ -112,7 +112,7 @@ class DeviceTables {
   /// `with_role` leaves out devices that have no role.
   explicit DeviceTables(bool with_role) : with_role_(with_role) {}
 
-  /// What comes from now on is of this start of a server, which gives devices its own numbers.
+  /// From now on all data are of this start of a server, which gives devices its own numbers.
   /// Samples of before the run are left out.
   void Start(const RunClock& clock);
   void Add(const v1::Tick& tick);

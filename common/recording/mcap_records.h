@@ -228,11 +228,10 @@ std::optional<Footer> DecodeFooter(std::string_view body);
 /// CRC-32 (IEEE 802.3, as zlib's) of the bytes so far and `bytes` behind them; start with 0.
 std::uint32_t Crc32(std::uint32_t so_far, std::string_view bytes);
 
-/// What is wrong with a chunk as it was decoded; empty when its records can be read.
+/// Problem of a chunk as it was decoded; empty when its records can be read.
 std::string ProblemOf(const std::optional<Chunk>& chunk);
 
-/// What is wrong with a record at the end of a file: the record itself, or what it says of the
-/// file.
+/// Problem of a record at the end of a file: of the record itself, or what it says of the file.
 struct Closing {
   std::string damage;
   std::string problem;

@@ -15,7 +15,7 @@ void Info(const std::string& line);
 void Warning(const std::string& line);
 void Error(const std::string& line);
 
-/// What a line is about, as fields of the journal: FOOTING_DEVICE, FOOTING_SESSION and
+/// Subject of a line, as fields of the journal: FOOTING_DEVICE, FOOTING_SESSION and
 /// FOOTING_CHANNEL. Empty or 0: not about one.
 struct Fields {
   std::string device;  ///< Its serial.

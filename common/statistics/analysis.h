@@ -41,7 +41,7 @@ std::string_view NameOf(Alternative alternative);
 std::string_view NameOf(Method method);
 std::string_view NameOf(Ties ties);
 
-/// What a command line may name, and what it is without a name.
+/// Names for a command line; the first is the default.
 inline constexpr std::array kTests{TestKind::kDunnett, TestKind::kSteel, TestKind::kPaired,
                                    TestKind::kRate};
 inline constexpr std::array kAlternatives{Alternative::kTwoSided, Alternative::kGreater,
@@ -74,7 +74,7 @@ using nlohmann::ordered_json;
 /// The rows of a report, what stands beside them, and what its note depends on.
 struct Findings {
   std::string method;     ///< As `--method` names it, or "quadrature".
-  std::string procedure;  ///< What was computed, in words.
+  std::string procedure;  ///< Description of the computation.
   ordered_json rows = ordered_json::array();
   ordered_json extra = ordered_json::object();  ///< Fields beside the rows.
   /// Remarks on the data for the note: clauses without a full stop.

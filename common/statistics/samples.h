@@ -15,7 +15,7 @@
 /// Tests of several treatments against one control: what a study of interfaces asks.
 namespace footing::statistics {
 
-/// Of a treatment in relation to the control: different, greater values, or smaller values.
+/// Alternative hypothesis: values of a treatment are different, greater or smaller.
 enum class Alternative { kTwoSided, kGreater, kLess };
 
 /// Where p comes from: every relabelling, random ones, or the limit distribution.
@@ -33,7 +33,7 @@ using Groups = std::vector<Group>;
 struct Blocks {
   std::vector<std::string> groups;          ///< The control first.
   std::vector<std::string> subjects;        ///< One for each row of `values`.
-  std::vector<std::vector<double>> values;  ///< Of a subject, in the order of `groups`.
+  std::vector<std::vector<double>> values;  ///< Values of a subject, in the order of `groups`.
 };
 
 /// An end without a bound is infinite.
@@ -72,10 +72,10 @@ struct Relabelling {
   std::size_t most_tables = 4'000'000;  ///< That an exact test runs through.
 };
 
-/// Of one comparison.
+/// Result of one comparison.
 struct RelabelledRow {
   double p = 1;  ///< Adjusted: share of relabellings whose greatest evidence reaches this one's.
-  double standard_error = 0;  ///< Of p, from random relabelling; 0 if exact.
+  double standard_error = 0;  ///< For p, from random relabelling; 0 if exact.
   double smallest_p = 0;      ///< The least that p can be with these values; 0 if unknown.
 };
 
@@ -150,7 +150,7 @@ Result<Relabelled> SteelRelabelling(const Groups& groups, Alternative alternativ
 /// All values in one order, without the values: what rank statistics depend on.
 struct RankedLabels {
   std::vector<std::size_t> group_sizes;  ///< The control's first.
-  std::vector<std::size_t> class_sizes;  ///< Of equal values, in rising order.
+  std::vector<std::size_t> class_sizes;  ///< Numbers of equal values, in rising order.
   std::vector<std::size_t> labels;       ///< The group of each value, in rising order.
 };
 RankedLabels Rank(const Groups& groups);
@@ -174,7 +174,7 @@ struct RankCounts {
 class SteelScale {
  public:
   SteelScale(const RankedLabels& ranked, Ties ties);
-  /// Of group `i` >= 1.
+  /// Score of group `i` >= 1.
   RankScore Score(std::size_t i, const RankCounts& counts) const;
   /// E[psi(1, 2) psi(1, 3)] over random values 1, 2, 3 of all, with psi = -1/2, 0, 1/2 as the first
   /// is greater, equal or smaller: 1/12 without ties.

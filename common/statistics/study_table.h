@@ -10,7 +10,7 @@
 
 namespace footing::statistics {
 
-/// What a table is read for.
+/// Purpose for which a table is read.
 enum class TableUse {
   kIndependent,  ///< group_index, group, value.
   kPaired,       ///< subject, group, value; every subject in every group once.
@@ -41,7 +41,7 @@ Result<StudyTable> ParseStudyTable(std::string_view text, const TableRequest& re
 
 /// One line of a study table.
 struct TableRow {
-  std::size_t line = 0;  ///< Of the file, from 1.
+  std::size_t line = 0;  ///< Line in the file, from 1.
   std::string subject;
   std::string group;
   std::optional<std::size_t> group_index;

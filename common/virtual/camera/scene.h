@@ -104,7 +104,7 @@ void AddClutter(Scene& scene, int count, noise::Random& random);
 /// A line that hides this share of the area of a ball's disc, from a random side.
 Occluder Hide(const Scene& scene, const Ball& ball, double share, noise::Random& random);
 
-/// What a camera that does not give its mosaic sends: missing colours as the mean of their
+/// Frame of a camera that does not give its mosaic: missing colours as the mean of their
 /// neighbours, then BT.601 luma and chroma of two pixels each, Y U Y V.
 std::vector<std::uint8_t> ToYuyv(const Mosaic& mosaic);
 

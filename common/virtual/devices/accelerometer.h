@@ -91,7 +91,7 @@ struct SensorReading {
   std::uint32_t clipped_axes = 0;  ///< Bits 0, 1, 2: x, y, z.
 };
 
-/// What the sensor makes of a true specific force: noise, then counts, then the end of the range.
+/// Reading of the sensor for a true specific force: noise, then counts, then the end of the range.
 SensorReading Read(const SensorModel& model, const Eigen::Vector3d& true_mps2,
                    noise::Random& random);
 

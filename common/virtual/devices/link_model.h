@@ -16,7 +16,7 @@ std::optional<LinkQuality> LinkNamed(const std::string& name);
 struct LinkConfig {
   LinkQuality quality = LinkQuality::kGood;
   double sensor_rate_hz = 100;   ///< How often the device's sensor takes a new sample.
-  double nominal_rate_hz = 100;  ///< Of reports on a good link.
+  double nominal_rate_hz = 100;  ///< Rate of reports on a good link.
   std::uint64_t seed = 1;
 };
 

@@ -21,13 +21,13 @@ struct WiimoteOptions {
   /// A 057e:0330, which always has a MotionPlus inside.
   bool tr = false;
   bool motion_plus_inside = false;
-  /// Of units that are known; else drawn from the seed.
+  /// Calibration of units that are known; else drawn from the seed.
   std::optional<AccelerationBlock> acceleration = std::nullopt;
   std::optional<NunchukBlock> nunchuk = std::nullopt;
   std::optional<MotionPlusBlock> motion_plus = std::nullopt;
 };
 
-/// What a Wiimote and what is plugged into it feel. S of the Wiimote: x left, y front, z down.
+/// True inputs of a Wiimote and its extension. S of the Wiimote: x left, y front, z down.
 struct WiimoteSensors {
   Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
   std::uint16_t buttons = 0;  ///< First button byte in bits 8 to 15.
@@ -116,7 +116,7 @@ enum class MoveModel {
   kZcm2,  ///< 054c:0c5e: one sample a report, sent twice; no magnetometer.
 };
 
-/// What a Move feels. S: x left, y front (to the sphere), z down (away from the buttons).
+/// True inputs of a Move. S: x left, y front (to the sphere), z down (away from the buttons).
 struct MoveSensors {
   Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();  ///< Right-handed.
@@ -157,7 +157,7 @@ class PsMove {
   /// 0 to 5, 0xee while charging, 0xef when charged.
   void set_battery(std::uint8_t raw) { battery_ = raw; }
   MoveModel model() const { return model_; }
-  /// What the feature reports bring; to be damaged by tests of damage.
+  /// Calibration in the feature reports; to be damaged by tests of damage.
   std::vector<std::uint8_t>& blob() { return blob_; }
 
  private:

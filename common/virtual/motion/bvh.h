@@ -12,7 +12,7 @@
 namespace footing::motion {
 
 struct BvhOptions {
-  double unit_m = 0.01;  ///< Of lengths and positions. Centimetres are usual, never stated.
+  double unit_m = 0.01;  ///< Unit of lengths and positions. Centimetres are usual, never stated.
 };
 
 /// Reads a BVH file into W. Channels may stand in any order; the order of a joint's rotations is
