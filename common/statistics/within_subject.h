@@ -45,7 +45,7 @@ SignedRanks WilcoxonTest(const std::vector<double>& differences, Alternative alt
 std::vector<double> Holm(const std::vector<double>& p);
 
 /// Differences of a treatment (index in `blocks.groups`) less the control, one for each subject.
-/// What rounding leaves of equal values counts as 0.
+/// A difference that rounding leaves of equal values counts as 0.
 std::vector<double> Differences(const Blocks& blocks, std::size_t treatment);
 
 /// Exact where all values are equal. There must be one value.

@@ -82,7 +82,7 @@ std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std
 /// Which joints can carry each marker of a trial.
 struct MarkerCarriers {
   std::vector<int> candidates;  ///< For a marker of which the set does not say where it sits.
-  std::vector<int> known;       ///< Of each track; -1 where the set does not say.
+  std::vector<int> known;       ///< Joint of each track; -1 where the set does not say.
 
   std::vector<int> Of(std::size_t track) const {
     return known[track] < 0 ? candidates : std::vector<int>{known[track]};

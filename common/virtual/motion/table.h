@@ -32,7 +32,7 @@ Result<Table> ParseTable(std::string_view text, const std::string& file);
 /// Writes one; numbers have as many digits as they need to be read again the same.
 std::string WriteTable(const Table& table);
 
-/// What one plate measured: the force on the person, where it acts, and the free moment there.
+/// Measurements of one plate: the force on the person, where it acts, and the free moment there.
 struct PlateForces {
   std::string name;           ///< The part of the columns' names that they share.
   Eigen::Matrix3Xd force_W;   ///< N, a column a time.
