@@ -50,6 +50,7 @@ std::vector<std::string_view> Fields(std::string_view line, char separator);
 /// Takes the next word off the front of `line`; empty at its end.
 std::string_view TakeWord(std::string_view& line);
 
+/// Whether both are equal but for the case of ASCII letters.
 bool EqualsIgnoringCase(std::string_view a, std::string_view b);
 
 /// `word` in quotes for a message: shortened, controls and what is not UTF-8 as ?.
@@ -85,6 +86,7 @@ void AppendShortest(std::string& text, double value);
 /// Bytes of the UTF-8 sequence that begins at `at` (RFC 3629, section 4); 0 if it is not valid.
 std::size_t SequenceLength(std::string_view text, std::size_t at);
 
+/// Whether all of the text is well-formed UTF-8.
 bool IsUtf8(std::string_view text);
 
 /// UTF-8 without control characters (below U+0020, and U+007F to U+009F): a terminal or a log shows

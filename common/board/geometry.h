@@ -72,6 +72,7 @@ struct CornerForces {
 /// Nothing is clamped: forces below zero after a tare are as true as those above.
 CornerForces operator-(const CornerForces& a, const CornerForces& b);
 
+/// Sum of the four corners' forces, N.
 double Total(const CornerForces& forces);
 
 /// Centre of pressure in the plate frame P, m.

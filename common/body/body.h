@@ -17,6 +17,7 @@ namespace footing::body {
 
 enum class Sex { kFemale, kMale, kMean };
 
+/// Rigid segments of the body; a segment of a limb stands for both sides.
 enum class Segment {
   kHead,        ///< Cervicale (C7) to vertex, the neck included.
   kUpperTrunk,  ///< Cervicale to xiphion.
@@ -73,6 +74,7 @@ struct Body {
   double height_m = 0;
 };
 
+/// Size and mass of a person, from which a body is made.
 struct PersonParameters {
   double mass_kg = 75;
   /// Standing height; without it, it follows from the lengths of legs and trunk.

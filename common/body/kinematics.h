@@ -104,6 +104,7 @@ struct PointTarget {
   double weight = 1;                              ///< Not negative.
 };
 
+/// Settings of a pose fit: its end, and a pull of coordinates towards a neutral pose.
 struct FitOptions {
   int iterations = 10;  ///< At most.
   /// Cost for a coordinate to be away from `neutral`, against the points: m/rad (of the root's
@@ -176,10 +177,13 @@ struct CompositeMasses {
   std::vector<Eigen::Matrix3d> inertia_W;  ///< About the body's C; kg m^2.
 };
 
+/// Centre of mass of the whole body in W, m.
 Eigen::Vector3d CentreOfMass(const Body& body, const Kinematics& at);
 
+/// Momentum in a pose, from the velocities of the joints' frames.
 Momentum ComputeMomentum(const Body& body, const Kinematics& at, const JointVelocities& velocities);
 
+/// Its time derivative, from velocities and accelerations of the joints' frames.
 MomentumRate ComputeMomentumRate(const Body& body, const Kinematics& at,
                                  const JointVelocities& velocities,
                                  const JointAccelerations& accelerations);

@@ -33,6 +33,7 @@ struct SeenPlumb {
   double tilt_rad = 0;  ///< Between the controller's long axis and the vertical.
 };
 
+/// All that a calibration of the camera's pose takes.
 struct Observations {
   std::vector<SeenMark> marks;
   std::vector<SeenPlumb> plumbs;

@@ -20,6 +20,7 @@ struct Cone {
   double tangent = 0;          ///< Tangent of its half angle.
 };
 
+/// A cone fitted to points on a silhouette.
 struct ConeFit {
   Cone cone;
   std::vector<bool> inliers;  ///< Whether each point fits.

@@ -51,6 +51,7 @@ struct Block {
 /// When a block's pixels are exposed after the row of a state's axis, in exposures.
 Lane AfterAxis(const Block& block, const State& state, const PixelScale& scale);
 
+/// Packs samples into blocks for vector arithmetic.
 void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks);
 /// Copies the evaluated values back to the samples.
 void ToSamples(const std::vector<Block>& blocks, std::vector<Sample>& samples);

@@ -19,6 +19,7 @@ using Shape = Eigen::Matrix<double, kShape, 1>;
 inline constexpr int kBlock = 32;
 using Lane = Eigen::Array<float, kBlock, 1>;
 
+/// All parameters of the model of a sphere's image.
 struct State {
   Shape shape;                                // As kShape lists.
   Eigen::Vector2d motion_px{0, 0};            // Zero for a sphere at rest.
@@ -74,6 +75,7 @@ struct Modelled {
 void Model(const Lane& s, const Lane& t, const State& state, const PixelScale& scale,
            const ProfileTable& table, Modelled& result);
 
+/// The same for a moving sphere, with its slopes along the motion.
 struct ModelledMoving : Modelled {
   std::array<Lane, kMotion> light_motion, cover_motion;  // Slopes along the motion.
 };

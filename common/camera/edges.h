@@ -49,6 +49,7 @@ struct Shutter {
   double speed_sd_mps = 1;      ///< Standard deviation of an unknown hand's speed, along each axis.
 };
 
+/// Properties of a camera on which the finder depends.
 struct Settings {
   Profile profile;
   PixelNoise noise;

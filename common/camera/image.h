@@ -16,6 +16,7 @@ enum class PixelFormat {
   kYuyv,    ///< Two bytes a pixel: luma of each, chroma of every two (BT.601, full range).
 };
 
+/// Bytes of one pixel in a row.
 inline int BytesPerPixel(PixelFormat format) { return format == PixelFormat::kYuyv ? 2 : 1; }
 
 /// A frame, borrowed; rows follow one another without padding. Pixel (0, 0) is the upper left one,

@@ -27,6 +27,7 @@ struct Circle {
   float u_px = 0, v_px = 0, radius_px = 0;
 };
 
+/// One sphere in a picture, seen or not.
 struct Sphere {
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
   Sight sight = Sight::kNothing;
@@ -42,6 +43,7 @@ struct RefusedLight {
   Circle circle;
 };
 
+/// One reduced frame with what was found in it.
 struct Picture {
   std::uint64_t number = 0;     ///< Number of the frame since the program's start.
   std::int64_t exposed_ns = 0;  ///< The host's monotonic clock.

@@ -16,6 +16,7 @@ struct Options {
   std::string method;
 };
 
+/// Choices of a command line, as the tests take them.
 struct Chosen {
   statistics::Alternative alternative = statistics::Alternative::kTwoSided;
   statistics::Ties ties = statistics::Ties::kPairwise;  ///< For Steel's test.

@@ -22,6 +22,7 @@ struct MarkState {
   std::optional<double> residual_m = {};  ///< Residual of the pose, once there is one.
 };
 
+/// Progress of a camera's calibration, for whoever draws it.
 struct MarksState {
   std::vector<MarkState> marks;
   bool upright = false;           ///< The controller stands on the next mark, sphere up.
@@ -33,6 +34,7 @@ struct MarksState {
 /// The items of a set-up, in their order.
 enum class Item { kAdapter, kPairing, kRoles, kLayout, kTare, kMounting, kWeigh, kCamera, kChecks };
 
+/// Name of an item on command lines, the item of a name, and all items in their order.
 const char* Name(Item item);
 std::optional<Item> ItemNamed(const std::string& name);
 const std::vector<Item>& AllItems();
@@ -76,6 +78,7 @@ struct Action {
   std::string remark;                                      ///< Likewise.
 };
 
+/// Answer to an action.
 struct Answer {
   std::string key;
   bool ok = false;

@@ -20,11 +20,13 @@ struct Pick {
   std::string note;          ///< Observation, for a person.
 };
 
+/// Load on one board during a stretch of time.
 struct BoardLoad {
   std::uint32_t device = 0;
   Load load;
 };
 
+/// Movement of one hand device during a stretch of time.
 struct DeviceMotion {
   std::uint32_t device = 0;
   Motion motion;

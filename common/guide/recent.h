@@ -33,6 +33,7 @@ struct Motion {
   double shake_mps2 = 0;  ///< Root mean square distance of the specific force from its mean.
 };
 
+/// Statistics of the samples of a stretch.
 Load LoadOf(const std::vector<stream::BoardSample>& samples);
 Motion MotionOf(const std::vector<stream::MotionSample>& samples);
 
@@ -77,6 +78,7 @@ struct Stance {
   Load right;
 };
 
+/// Loads in the poses of the layout check.
 struct LayoutObserved {
   std::optional<Stance> left_alone;  ///< Both are needed to find swapped boards.
   std::optional<Stance> right_alone;
@@ -86,6 +88,7 @@ struct LayoutObserved {
 
 enum class LayoutFault { kNone, kNoContact, kSwapped, kLeftTurned, kRightTurned, kBothTurned };
 
+/// Result of the layout check.
 struct LayoutVerdict {
   LayoutFault fault = LayoutFault::kNone;
   bool degraded = false;

@@ -34,6 +34,7 @@ struct Tensor {
   std::vector<std::string> labels = {};
 };
 
+/// A file that a model was trained on.
 struct DataFile {
   std::string name;  ///< Without its folder.
   Digest sha256{};
@@ -48,6 +49,7 @@ struct Provenance {
   std::vector<std::string> subjects;  ///< Everyone whose motion was used, validation included.
 };
 
+/// A trained model: its tensors and where they come from.
 struct Model {
   std::string kind;  ///< "cascade", "mlp", "com", "basis", ...
   Provenance provenance;

@@ -95,6 +95,7 @@ inline constexpr std::uint32_t kProtocolMinor = 0;
 /// As a person reads it; the number of one that this version does not know.
 std::string RoleName(v1::Role role);
 
+/// A refusal with that reason, and a line for a person.
 v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message);
 
 /// A Welcome but for its stamps.
@@ -211,6 +212,7 @@ enum class Grant { kAddress, kUser, kCertificate, kToken, kViewToken };
 /// "address" (loopback TCP), "user" (the kernel knows it), "certificate", "token", "view_token".
 std::string Name(Grant grant);
 
+/// A client that was let in: its role, and the reason for it.
 struct Admitted {
   v1::Role role = v1::ROLE_VIEW;
   v1::Role highest = v1::ROLE_VIEW;  ///< That it could have asked for.
@@ -224,6 +226,7 @@ struct Admitted {
 /// Which proof of who it is a caller lacked, for the log.
 enum class Lack { kNone, kAnyProof, kKnownCertificate, kRightToken };
 
+/// A client that was turned away: the answer to it, and what it lacks.
 struct NotAdmitted {
   v1::Refused answer;
   Lack lack = Lack::kNone;

@@ -21,6 +21,7 @@
 
 namespace footing::transport {
 
+/// Address, identity and subscription of a client.
 struct ClientOptions {
   Address address;
   std::string client_name;
@@ -57,6 +58,7 @@ struct ClockOffset {
   std::int64_t uncertainty_ns = 0;  ///< Half the round trip: the truth is within.
 };
 
+/// Calls that a client makes for each message and change of its link.
 struct ClientHandlers {
   std::function<void(const v1::Welcome&)> on_welcome;
   std::function<void(const v1::Tick&)> on_tick;
@@ -98,10 +100,9 @@ class Client {
   std::shared_ptr<Implementation> implementation_;
 };
 
-/// Messages of a client to its server, as functions of what it knows.
-/// Over TCP with the token of the environment where the options have none; an error when its file
-/// cannot be used. Beyond this host a token goes over tcp:, where everybody on the way can read it,
-/// only with FOOTING_INSECURE_LAN=1; an error otherwise.
+/// First message of a client. Over TCP it has the token of the environment where the options have
+/// none; an error when its file cannot be used. Beyond this host a token goes over tcp:, where
+/// everybody on the way can read it, only with FOOTING_INSECURE_LAN=1; an error otherwise.
 Result<v1::Envelope> MakeHello(const ClientOptions& options);
 
 /// Asks for the ticks behind `last_sequence` of `last_epoch`, or, when that is 0, for those that
@@ -109,6 +110,7 @@ Result<v1::Envelope> MakeHello(const ClientOptions& options);
 v1::Envelope MakeSubscribe(const ClientOptions& options, std::uint64_t epoch,
                            std::uint64_t last_epoch, std::uint64_t last_sequence);
 
+/// Asks for ticks that are missing, both ends included.
 v1::Envelope MakeRefill(std::uint64_t from_sequence, std::uint64_t to_sequence);
 v1::Envelope MakePing(std::uint64_t id, std::int64_t now_ns);
 v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_t now_ns);

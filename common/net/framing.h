@@ -25,6 +25,7 @@ namespace footing::transport {
 
 inline constexpr std::size_t kLengthBytes = 4;
 
+/// Length of a frame to the bytes in front of it, and back.
 std::array<char, kLengthBytes> EncodeLength(std::uint32_t length);
 std::uint32_t DecodeLength(const char* bytes);
 
@@ -94,6 +95,7 @@ class MessageParser {
   bool parsed_ = false;
 };
 
+/// Limits of one connection, bytes and frames.
 struct FramedLimits {
   std::uint32_t max_in_bytes = 64u << 10;  ///< A longer announced frame ends the connection.
   std::uint32_t max_out_bytes = 1u << 20;
@@ -104,6 +106,7 @@ struct FramedLimits {
   InputBudget input = {};
 };
 
+/// Calls that a connection makes.
 struct FramedHandlers {
   /// One frame's payload, valid during the call.
   std::function<void(std::string_view payload)> on_frame;

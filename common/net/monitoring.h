@@ -112,6 +112,7 @@ class Monitor {
   std::unique_ptr<MetricsEndpoint> endpoint_;
 };
 
+/// A label of a metric's sample.
 struct Label {
   const char* name;
   std::string value;

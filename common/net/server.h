@@ -45,6 +45,7 @@ struct AccessKeys {
   bool has_keys() const { return has_token() || !clients.empty(); }
 };
 
+/// Identity, channels and limits of a server.
 struct ServerOptions : AccessKeys {
   std::string server_id;  ///< "footingd" or "footing-sim".
   std::string version;
@@ -92,6 +93,7 @@ struct OverloadLine {
   std::string channel = {};
 };
 
+/// Calls that a server makes to the program that it is part of.
 struct ServerHandlers {
   /// A command of a session with role control or admin. Roles below, and texts and numbers that no
   /// command may have (CheckContent), are refused before this is called. Without a result the
@@ -105,6 +107,7 @@ struct ServerHandlers {
   std::function<void(const OverloadLine&)> on_overload = {};
 };
 
+/// Counts of a server since its start, and its present sessions.
 struct ServerStatistics {
   std::size_t sessions = 0;
   std::uint64_t accepted = 0;

@@ -54,6 +54,7 @@ struct Event {
 /// Text of a table: cells that are empty become "n/a", tabs and line ends blanks.
 std::string Tsv(const std::vector<std::vector<std::string>>& rows);
 
+/// Contents of channels.tsv: name, type, tracked point and units of every channel.
 std::string ChannelsTsv(const MotionTable& table);
 /// Without a header, as the standard asks.
 std::string MotionTsv(const MotionTable& table);

@@ -25,6 +25,7 @@ struct Visitor {
   std::function<void()> damage;  ///< Something is left out here, by its CRC or its form.
 };
 
+/// Behaviour of a walk at damage.
 enum class WalkMode {
   kStrict,   ///< Ends at the first thing wrong.
   kSalvage,  ///< Leaves out what is damaged and takes every complete record of a cut file.

@@ -19,6 +19,7 @@ struct Choice {
   bool with_role = false;          ///< Only devices that have a role.
 };
 
+/// A recording as the tables of a data set.
 struct RecordedMotion {
   std::vector<MotionTable> tables;  ///< The table of footing-sim first, then one a sending device.
   std::vector<Event> events;        ///< In order for each server's start.

@@ -19,6 +19,7 @@ struct RecordedChannel {
   std::string_view bytes;   ///< The serialised message.
 };
 
+/// One tick with the channels that were recorded of it.
 struct RecordedTick {
   std::int64_t host_ns = 0;    ///< CLOCK_MONOTONIC of the server: when the tick was made.
   std::uint32_t sequence = 0;  ///< The tick's, lowest 32 bits.

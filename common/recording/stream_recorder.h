@@ -79,6 +79,7 @@ class ServerNames {
   std::map<std::string, std::string> address_of_;
 };
 
+/// Server to record, and the calls that its recorder makes.
 struct ServerRecorderOptions {
   transport::Address address;
   std::string client_name;

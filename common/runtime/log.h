@@ -11,6 +11,7 @@ namespace footing::log {
 /// never calls it logs under the name of its file.
 void Start(const std::string& program, bool quiet);
 
+/// Logs a line at one of three levels.
 void Info(const std::string& line);
 void Warning(const std::string& line);
 void Error(const std::string& line);
@@ -25,6 +26,7 @@ struct Fields {
 
 enum class Level { kInfo, kWarning, kError };
 
+/// Logs a line with the fields that name its subject.
 void Write(Level level, const std::string& line, const Fields& fields);
 
 }  // namespace footing::log

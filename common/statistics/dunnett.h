@@ -16,6 +16,7 @@ struct DunnettRow {
   Interval interval;          ///< Simultaneous, one-sided for a one-sided alternative.
 };
 
+/// Result of Dunnett's test, a row a treatment.
 struct Dunnett {
   double degrees = 0;
   double critical = 0;       ///< |t| (one-sided: t) that p = 1 - confidence belongs to.

@@ -25,6 +25,7 @@ struct RateRatio {
   Interval interval;        ///< Simultaneous by Bonferroni.
 };
 
+/// One treatment's rate against the control's, under both models.
 struct RateRow {
   double ratio = 0;  ///< Estimate under the Poisson model: events per exposure.
   RateRatio poisson;
@@ -32,6 +33,7 @@ struct RateRow {
   RateRatio negative_binomial;
 };
 
+/// Result of the comparison of rates, a row a treatment.
 struct Rates {
   std::vector<double> rates;    ///< Rates of the groups, the control's first: events per exposure.
   double pearson_ratio = 0;     ///< Pearson's chi-square over its degrees: 1 under Poisson.

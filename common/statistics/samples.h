@@ -21,6 +21,7 @@ enum class Alternative { kTwoSided, kGreater, kLess };
 /// Where p comes from: every relabelling, random ones, or the limit distribution.
 enum class Method { kExact, kPermutation, kAsymptotic };
 
+/// Values under one condition.
 struct Group {
   std::string name;
   std::vector<double> values;  ///< Finite, in any order.
@@ -79,6 +80,7 @@ struct RelabelledRow {
   double smallest_p = 0;      ///< The least that p can be with these values; 0 if unknown.
 };
 
+/// Result of a relabelling test, a row a comparison.
 struct Relabelled {
   Method method = Method::kExact;
   double relabellings = 0;  ///< Distinct tables run through, or random draws.
@@ -127,6 +129,7 @@ struct RankScore {
   double z = 0;
 };
 
+/// Steel's score of each treatment against the control.
 std::vector<RankScore> SteelScores(const Groups& groups, Ties ties);
 
 /// The limit distribution of max z_i: z_i become normal, with correlations l_i l_j.
@@ -188,6 +191,7 @@ class SteelScale {
   double shared_covariance_ = 0;  ///< See shared_covariance().
 };
 
+/// Counts of each treatment for these labels, in the order of `ranked`.
 RankCounts CountLabels(const RankedLabels& ranked, const std::vector<std::size_t>& labels);
 
 /// Runs through all ways to deal the classes to groups of these sizes, with the probability of each

@@ -17,12 +17,14 @@ enum class TableUse {
   kCounts,       ///< As kIndependent with whole values; exposure, where there is one.
 };
 
+/// File to read, and its use.
 struct TableRequest {
   std::string file;     ///< For messages.
   std::string control;  ///< Name of the control; empty: see ParseStudyTable.
   TableUse use = TableUse::kIndependent;
 };
 
+/// Values of a study by group, and by subject where they are paired.
 struct StudyTable {
   Groups groups;                               ///< The control first.
   std::vector<std::vector<double>> exposures;  ///< As `groups`; 1 without such a column.
@@ -49,6 +51,7 @@ struct TableRow {
   double exposure = 1;
 };
 
+/// Rows of a table, and which of its columns there are.
 struct TableRows {
   std::vector<TableRow> rows;
   bool has_subject = false;

@@ -65,6 +65,7 @@ struct Sensor {
   double dn_per_electron = 0.03;
 };
 
+/// All that a rendered frame shows.
 struct Scene {
   Lens lens;
   Sensor sensor;

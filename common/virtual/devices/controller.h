@@ -160,6 +160,7 @@ enum class SerialOf {
 /// A Bluetooth address drawn from the seed.
 std::string MakeSerial(SerialOf kind, std::uint64_t seed);
 
+/// Input of a Wii U Pro Controller's user.
 struct ProControllerSensors {
   GamepadSensors gamepad;   ///< Its triggers are switches: the bits of `buttons` alone count.
   bool left_stick = false;  ///< Pressed in.

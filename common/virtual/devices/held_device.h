@@ -51,6 +51,7 @@ struct HeldErrorConfig {
   std::uint64_t seed = 1;
 };
 
+/// One sample of a held device.
 struct HeldReading {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();

@@ -46,6 +46,7 @@ struct KinectPoint {
   double sd_m = 1;      ///< Standard deviation of all its errors, along each axis.
 };
 
+/// Place and weaknesses of a simulated Kinect.
 struct KinectOptions {
   /// Hips below this share of their height in the T-pose: the tracker has lost the legs.
   double crouch_share = 0.85;

@@ -13,6 +13,7 @@ enum class LinkQuality { kIdeal, kGood, kPoor };
 /// "ideal", "good", "poor"; none for another name.
 std::optional<LinkQuality> LinkNamed(const std::string& name);
 
+/// Rates and quality of a simulated radio link.
 struct LinkConfig {
   LinkQuality quality = LinkQuality::kGood;
   double sensor_rate_hz = 100;   ///< How often the device's sensor takes a new sample.

@@ -17,6 +17,7 @@ namespace footing::virtual_devices {
 /// Ten bytes of EEPROM: zero, 1 g, volume, sum.
 using AccelerationBlock = std::array<std::uint8_t, 10>;
 
+/// Model and calibration of a simulated Wiimote.
 struct WiimoteOptions {
   /// A 057e:0330, which always has a MotionPlus inside.
   bool tr = false;
@@ -111,6 +112,7 @@ class Wiimote {
   int refusals_ = 0;
 };
 
+/// Models of the PS Move, with their USB ids.
 enum class MoveModel {
   kZcm1,  ///< 054c:03d5: two samples a report, magnetometer.
   kZcm2,  ///< 054c:0c5e: one sample a report, sent twice; no magnetometer.

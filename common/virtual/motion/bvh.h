@@ -11,6 +11,7 @@
 /// Biovision hierarchy (BVH): skeleton and motion in one text file; y up, z ahead, degrees.
 namespace footing::motion {
 
+/// Facts that a BVH file does not state.
 struct BvhOptions {
   double unit_m = 0.01;  ///< Unit of lengths and positions. Centimetres are usual, never stated.
 };

@@ -29,6 +29,7 @@ struct MarkerTracks {
 /// Index of the marker of that name, or -1. Case matters.
 int FindMarker(const MarkerTracks& tracks, std::string_view name);
 
+/// Whether a marker was seen: its place is finite.
 inline bool Seen(const Eigen::Vector3d& p) { return p.allFinite(); }
 
 /// InvalidData where fewer than `least` markers are seen for longer than `longest_s`: the pose held
@@ -89,6 +90,7 @@ struct MarkerCarriers {
   }
 };
 
+/// Joints that can carry each marker, by the set and the landmarks.
 MarkerCarriers FindCarriers(const body::Skeleton& skeleton, const body::Landmarks& landmarks,
                             const MarkerTracks& tracks, const MarkerSet& set);
 

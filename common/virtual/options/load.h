@@ -12,6 +12,7 @@
 /// Motion files by their paths: the edge around the pure readers of common/virtual/motion.
 namespace footing::motion_files {
 
+/// Facts that a motion file does not state.
 struct LoadOptions {
   std::string skeleton = {};  ///< ASF file of an AMC motion.
   double amc_rate_hz = 120;   ///< AMC files do not say.

@@ -15,6 +15,7 @@ namespace footing::choreography {
 /// The standard person of this height, for whom scripts are made.
 Result<body::Body> Performer(double height_m, double mass_kg);
 
+/// A script performed: the motion, and its distance from the script.
 struct Performance {
   motion::Motion motion;
   double pressure_error_m = 0;  ///< Root mean square, of the centre of pressure from the script's.

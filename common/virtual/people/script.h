@@ -53,6 +53,7 @@ struct Key {
   Values values{};
 };
 
+/// Key poses in their order.
 struct Script {
   std::vector<Key> keys;
   double sway_m = 0;  ///< Root mean square of the pressure's wandering, each way.
