@@ -132,7 +132,7 @@ class PoseFit {
     double points = 0;   ///< Cost of the points, m².
     double cost = 0;     ///< The same and what holds the coordinates.
     double gain = 0;     ///< By which the last step lowered the cost.
-    double damping = 0;  ///< For the next step, relative to H's diagonal.
+    double damping = 0;  ///< Damping of the next step, relative to H's diagonal.
   };
 
   void SetHold(const FitOptions& options, const Eigen::Ref<const Eigen::VectorXd>& q);

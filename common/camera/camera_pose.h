@@ -94,7 +94,7 @@ struct ThreePoses {
   Eigen::Vector3d p_WO_m{0, 0, 0};  ///< Where in W the sphere was in the first pose.
   /// Distances of the other two from the first, where they are known; 0: not known.
   double ahead_m = 0, left_m = 0;
-  double placement_sd_m = 0.025;  ///< For a hand that holds a pose in the air, per axis.
+  double placement_sd_m = 0.025;  ///< Deviation of a hand that holds a pose, per axis.
 };
 
 /// x points from the first place to the second, and the third is on y's side. Refuses places nearer

@@ -264,7 +264,7 @@ using disc::Sample, disc::Solution, disc::State;
 
 constexpr int kMostPixels = 700, kMostPixelsMoving = 400;  // A moving one costs twice as much.
 constexpr double kFarBlurs = 4;       // Beyond the edge; the background needs no more.
-constexpr double kMaybeMoves = 13.3;  // Over chi² with four degrees: 1 % of spheres at rest.
+constexpr double kMaybeMoves = 13.3;  // Chi² of four degrees; 1 % of spheres at rest exceed it.
 constexpr double kSurelyMoves = 40;
 constexpr double kLeastMotionPx = 0.4;
 constexpr double kNoMotionSds = 8;  // A misfit of a part of the pixels that motion never has.
@@ -485,7 +485,7 @@ class Strategy {
   Fitter fitter_;
   State begin_;
   std::vector<Sample> pixels_;         // All that were collected, for a sphere at rest.
-  std::vector<Sample> moving_pixels_;  // For one that moves.
+  std::vector<Sample> moving_pixels_;  // The same for a moving sphere.
   std::optional<Fit> best_;
   double clipped_share_ = 0;
   bool is_behind_edge_ = false;

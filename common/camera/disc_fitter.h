@@ -94,7 +94,7 @@ inline constexpr std::size_t kSomePixels = 200;  // Enough to choose between exp
 /// How well a solution explains the pixels.
 struct Solution {
   State state;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< For axis and tangent.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Errors of axis and tangent.
   double misfit = 0;          ///< Mean square residual over its expectation.
   double misfit_sds = 0;      ///< By how many of its deviations that is more than 1.
   double excess_chi2 = 0;     ///< Chi² of the residuals beyond its expectation.
@@ -175,7 +175,7 @@ class Fitter {
   std::vector<Sample> samples_;
   std::vector<Block> blocks_;  // The same, as they were solved last.
   int inside_ = 0, clipped_ = 0;
-  Normal normal_;  // At the state that was solved last.
+  Normal normal_;  // Normal equations at the state that was solved last.
 };
 
 /// Evidence of motion in the residuals of a sphere at rest, and the effect of motion on its fit.

@@ -21,7 +21,7 @@ constexpr int kFewestHidden = 3;  // Sectors; one or two are noise.
 constexpr std::size_t kFewestPlaces = 5;
 constexpr double kStraightBlurs = 0.6, kLargeBlurs = 5;
 constexpr double kHopelessSds = 20;    // Deviations of coarse places; a finer one gains some 10.
-constexpr double kMostResidual2 = 36;  // Limit for one pixel.
+constexpr double kMostResidual2 = 36;  // Limit for one pixel, in squared deviations.
 
 /// Akaike's: each pixel that is left out has a level of its own, which is a parameter.
 double Cost(const Solution& solution, std::size_t all) {

@@ -17,8 +17,8 @@ constexpr double kDarkShare = 0.75;  // Share of the mean around, to which the d
 constexpr int kWindowShare = 8;      // The mean is of this part of the width.
 constexpr std::size_t kLeastPixels = 12, kMostPixels = 6000;
 constexpr double kLeastFill = 0.75, kMostFill = 1.2, kMostAspect = 2.5;
-constexpr double kMostAreaRatio = 2.5;   // Between neighbours.
-constexpr double kOffPrediction = 0.35;  // Share of the step.
+constexpr double kMostAreaRatio = 2.5;   // Ratio of neighbours' areas.
+constexpr double kOffPrediction = 0.35;  // Distance from the predicted place, share of the step.
 
 /// Light of every 2 x 2 pixels, which a mosaic mixes alike everywhere; its pixel (0, 0) is at
 /// (0.5, 0.5) of the image.

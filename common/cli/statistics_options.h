@@ -19,7 +19,7 @@ struct Options {
 /// Choices of a command line, as the tests take them.
 struct Chosen {
   statistics::Alternative alternative = statistics::Alternative::kTwoSided;
-  statistics::Ties ties = statistics::Ties::kPairwise;  ///< For Steel's test.
+  statistics::Ties ties = statistics::Ties::kPairwise;  ///< Handling of ties in Steel's test.
   std::optional<statistics::Method> method;             ///< Without: the one the test prefers.
 };
 

@@ -145,7 +145,7 @@ class CameraStep {
   bool begun_ = false, stored_ = false;
   std::vector<camera_pose::BoardMark> marks_;
   std::vector<std::size_t> places_;  ///< Indices of marks_, in the order asked for.
-  std::vector<bool> upright_;        ///< For each place.
+  std::vector<bool> upright_;        ///< Whether each place is an upright one.
   std::size_t next_ = 0;             ///< Index into places_.
   std::int64_t asked_ns_ = 0;        ///< When the present place was asked for.
   std::string picture_;

@@ -15,7 +15,7 @@ namespace footing::guide {
 struct Pick {
   enum class Kind { kNone, kOne, kAmbiguous };
   Kind kind = Kind::kNone;
-  std::uint32_t device = 0;  ///< Device of kOne.
+  std::uint32_t device = 0;  ///< The device that is meant, with kOne.
   double lead = 0;           ///< How clearly: its signal over the next one's, at most 99.
   std::string note;          ///< Observation, for a person.
 };

@@ -222,7 +222,7 @@ class Session : public std::enable_shared_from_this<Session> {
   FramedConnection connection_;
   timer::Timer timer_;
   std::int64_t heard_ns_ = 0;
-  const double messages_per_s_;  ///< Its own input rate, when a reload changes the limit.
+  const double messages_per_s_;  ///< Its own input rate: a reload may change the limit.
   SessionRecord record_;
   TokenBucket slowed_notices_{1, 1};
   Answers answers_;

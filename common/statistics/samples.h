@@ -76,7 +76,7 @@ struct Relabelling {
 /// Result of one comparison.
 struct RelabelledRow {
   double p = 1;  ///< Adjusted: share of relabellings whose greatest evidence reaches this one's.
-  double standard_error = 0;  ///< For p, from random relabelling; 0 if exact.
+  double standard_error = 0;  ///< Standard error of p by random relabelling; 0 if exact.
   double smallest_p = 0;      ///< The least that p can be with these values; 0 if unknown.
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 using body::Landmark;
 
-constexpr double kHeelBehindM = 0.045;  // Behind the ankle.
+constexpr double kHeelBehindM = 0.045;  // Distance of the heel behind the ankle.
 constexpr double kHeelHalfWidthM = 0.03;
 constexpr double kBallHalfWidthM = 0.04;
 // Standing height of a corner: lower in few frames only.
@@ -90,7 +90,7 @@ BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double c
 
 namespace {
 
-constexpr double kFlightShare = 0.06;  // Share of the weight.
+constexpr double kFlightShare = 0.06;  // Largest vertical force in flight, share of the weight.
 constexpr double kReluctanceM = 0.025;
 constexpr double kMomentScaleM = 0.3;  // Makes the COP's rows as large as the total's.
 constexpr double kEquality = 30;       // Weight of total and COP against evenness.

@@ -14,7 +14,7 @@ namespace footing::virtual_sensors {
 namespace {
 
 constexpr double kStrapShare = 0.5;   // Share of the way along its segment.
-constexpr double kBeltBehindM = 0.1;  // Behind the middle of the pelvis.
+constexpr double kBeltBehindM = 0.1;  // Distance behind the middle of the pelvis.
 
 /// At a point of a joint. R_SW: of the T-pose.
 HeldCourse FollowPoint(const body::Body& body, const motion::Motion& motion,

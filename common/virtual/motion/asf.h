@@ -75,7 +75,7 @@ struct AsfSkeleton {
   Eigen::Vector3d root_position_m = Eigen::Vector3d::Zero();
 
   double unit_m = 0;
-  double radians_per_angle = 0;  ///< Unit of the ASF file; AMC files say their own.
+  double radians_per_angle = 0;  ///< Angle unit of the ASF file; AMC files say their own.
 };
 
 /// `file` is the name for errors, which say the line and what was expected there. Bones that slide

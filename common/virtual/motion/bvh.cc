@@ -300,7 +300,7 @@ namespace {
 using body::Axis;
 using body::Joint;
 
-constexpr int kDecimals = 6;  // In centimetres and degrees: finer than any capture, and stable.
+constexpr int kDecimals = 6;  // For centimetres and degrees: finer than any capture, and stable.
 
 /// A joint as the file can hold it: three rotations about the plain axes.
 struct Written {

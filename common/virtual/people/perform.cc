@@ -172,7 +172,7 @@ using body::Landmark;
 
 // Shares of a movement of the trunk that the hips make; the rest is the back's.
 constexpr double kHipsBow = 0.45, kHipsTwist = 0.35, kHipsBend = 0.2;
-constexpr double kToesDownRadPerM = 1.2;  // Pitch of a lifted foot.
+constexpr double kToesDownRadPerM = 1.2;  // Pitch of a lifted foot over its height.
 // From where a standing foot carries to as far as a leaning body goes, m: well inside the sole.
 constexpr double kToFrontM = 0.08, kToHeelM = 0.055;
 

@@ -229,7 +229,7 @@ TEST(Plates, TellTheirOwnTime) {
   ASSERT_TRUE(late.ok()) << late.error().message;
   EXPECT_NEAR(late->report.begin_s, 1.5, 1e-9);
   EXPECT_NEAR(late->report.end_s, 3.99, 1e-9);
-  EXPECT_LT(late->report.cop_rms_m.y(), 0.004);  // For a sway of 2 cm.
+  EXPECT_LT(late->report.cop_rms_m.y(), 0.004);  // The body sways by 2 cm.
   const auto early = OnPlates(clip, Plates(clip, -1));
   ASSERT_TRUE(early.ok()) << early.error().message;
   EXPECT_EQ(early->report.begin_s, 0);
