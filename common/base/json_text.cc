@@ -45,7 +45,7 @@ Result<Json> Parse(const std::string& text, const std::string& origin) {
   Json json;
   try {
     json = Json::parse(text, std::ref(repeated), true, /*ignore_comments=*/true);
-  } catch (const typename Json::exception& error) {  // Of a number too large for any type, too.
+  } catch (const typename Json::exception& error) {  // Also for too large a number.
     return InvalidData(origin + " is not JSON: " + std::string(WithoutTag(error.what())));
   }
   if (!repeated.name().empty()) {

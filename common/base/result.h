@@ -15,7 +15,7 @@ enum class ErrorKind {
   kInvalidData = 4,  ///< Bytes, a file or a recording that make no sense.
 };
 
-/// What went wrong in the outside world: one line that says what, which, where and what to do now.
+/// Failure of the outside world: one line that says what, which, where and what to do now.
 struct Error {
   ErrorKind kind = ErrorKind::kFailure;
   std::string message;

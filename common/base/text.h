@@ -29,7 +29,7 @@ class Lines {
 
   std::size_t bytes_left() const { return rest_.size(); }
   const std::string& file() const { return file_; }
-  /// Of the line that Next returned last, from 1; 0 before the first.
+  /// Number of the line that Next returned last, from 1; 0 before the first.
   std::size_t number() const { return number_; }
   /// "FILE, line N: MESSAGE", of the line that Next returned last.
   Error Fault(const std::string& message) const;
@@ -50,6 +50,7 @@ std::vector<std::string_view> Fields(std::string_view line, char separator);
 /// Takes the next word off the front of `line`; empty at its end.
 std::string_view TakeWord(std::string_view& line);
 
+/// Whether both are equal but for the case of ASCII letters.
 bool EqualsIgnoringCase(std::string_view a, std::string_view b);
 
 /// `word` in quotes for a message: shortened, controls and what is not UTF-8 as ?.
@@ -85,6 +86,7 @@ void AppendShortest(std::string& text, double value);
 /// Bytes of the UTF-8 sequence that begins at `at` (RFC 3629, section 4); 0 if it is not valid.
 std::size_t SequenceLength(std::string_view text, std::size_t at);
 
+/// Whether all of the text is well-formed UTF-8.
 bool IsUtf8(std::string_view text);
 
 /// UTF-8 without control characters (below U+0020, and U+007F to U+009F): a terminal or a log shows
@@ -95,7 +97,7 @@ bool IsPrintable(std::string_view text);
 /// is not UTF-8 counts as one.
 std::size_t Characters(std::string_view text);
 
-/// What a JSON library reports, for a person: without the tag "[json.exception.NAME.NUMBER] ".
+/// Message of a JSON library for a person: without the tag "[json.exception.NAME.NUMBER] ".
 constexpr std::string_view WithoutTag(std::string_view message) {
   const std::size_t end = message.starts_with('[') ? message.find("] ") : std::string_view::npos;
   return end == std::string_view::npos ? message : message.substr(end + 2);
@@ -137,7 +139,7 @@ inline double Quantile(std::vector<double> values, double share) {
   return OfRank(std::move(values), rank);
 }
 
-/// Of an even number of values, the greater of the two in the middle. 0 if there are none.
+/// The greater of the two middle values of an even number of them. 0 if there are none.
 inline double Median(std::vector<double> values) { return Quantile(std::move(values), 0.5); }
 
 }  // namespace footing::text

@@ -14,6 +14,7 @@ inline constexpr double kPi = std::numbers::pi;
 
 inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
+/// Angles at the edge are in degrees; everywhere else they are in radians.
 constexpr double DegreesToRadians(double degrees) { return degrees * kPi / 180.0; }
 constexpr double RadiansToDegrees(double radians) { return radians * 180.0 / kPi; }
 
@@ -21,6 +22,7 @@ constexpr double RadiansToDegrees(double radians) { return radians * 180.0 / kPi
 constexpr double KilogramsToNewtons(double kilograms) { return kilograms * kStandardGravityMps2; }
 constexpr double NewtonsToKilograms(double newtons) { return newtons / kStandardGravityMps2; }
 
+/// Durations in seconds to nanoseconds, cut off towards 0, and back.
 constexpr std::int64_t SecondsToNanoseconds(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
 }
@@ -28,6 +30,7 @@ constexpr double NanosecondsToSeconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
 
+/// The value itself, or 0 where it is infinite or NaN.
 inline double FiniteOrZero(double value) { return std::isfinite(value) ? value : 0; }
 
 /// The same angle in (-pi, pi]. `radians` must be finite.
@@ -43,6 +46,7 @@ inline double NearestTurn(double angle_rad, double reference_rad) {
 /// overflow.
 inline constexpr std::int64_t kMostInstantNs = std::int64_t{1} << 61;
 
+/// Whether a stamp is within kMostInstantNs.
 constexpr bool IsInstant(std::int64_t time_ns) {
   return time_ns >= -kMostInstantNs && time_ns <= kMostInstantNs;
 }
@@ -50,12 +54,13 @@ constexpr bool IsInstant(std::uint64_t time_ns) {
   return time_ns <= static_cast<std::uint64_t>(kMostInstantNs);
 }
 
-/// Conversions of instants and durations that units.h lacks: SecondsToNanoseconds there cuts off.
+/// Nanoseconds in a millisecond.
 inline constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 
 /// To the nearest nanosecond.
 inline std::int64_t RoundToNanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
+/// Nanoseconds as milliseconds.
 constexpr double NanosecondsToMilliseconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-6;
 }

@@ -18,7 +18,7 @@ inline constexpr stream::BoardGeometry kBalanceBoard{.plate_x_m = 0.511,
                                                      .plate_y_m = 0.316,
                                                      .sensor_distance_x_m = 0.433,
                                                      .sensor_distance_y_m = 0.238};
-/// Of the plate's surface over the floor.
+/// Height of the plate's surface over the floor.
 inline constexpr double kPlateHeightM = 0.053;
 
 /// Total load above which somebody is in contact with a board, and below which nobody is: 7 and 5
@@ -72,6 +72,7 @@ struct CornerForces {
 /// Nothing is clamped: forces below zero after a tare are as true as those above.
 CornerForces operator-(const CornerForces& a, const CornerForces& b);
 
+/// Sum of the four corners' forces, N.
 double Total(const CornerForces& forces);
 
 /// Centre of pressure in the plate frame P, m.
@@ -118,10 +119,10 @@ class Plate {
 /// a velocity keeps that error. A mean over a window around an instant (SWARII) loses no impulse
 /// either, but comes half a window and a sample late. Impulses are added up by the samples' own
 /// times and are right whenever they are looked at; a step gets the mean load of its own time.
-/// What a board's cells have felt until its newest sample.
+/// Impulses on a board's cells until its newest sample.
 struct BoardImpulse {
   bool valid = false;
-  double sampled_s = 0;  ///< Of the newest sample, on the sensor daemon's clock.
+  double sampled_s = 0;  ///< Time of the newest sample, on the sensor daemon's clock.
   Corners impulse_ns{};  ///< N s, since any time.
 };
 

@@ -29,7 +29,7 @@ stream::BoardLayout DefaultLayout();
 /// preset is set. Its geometry stays.
 stream::BoardLayout LayoutOr(const stream::BoardLayout& published);
 
-/// What is wrong with a layout and what to do, in one line; empty when it is sound: a known preset,
+/// Problem of a layout and its remedy, in one line; empty when it is sound: a known preset,
 /// finite poses near the origin, the left board left of the right one, no overlap, and between
 /// their facing edges the stated gap. Of "single" only the left pose counts.
 ///
@@ -37,8 +37,8 @@ stream::BoardLayout LayoutOr(const stream::BoardLayout& published);
 /// (stand left, stand right, lean forward) does.
 std::string Problem(const stream::BoardLayout& layout);
 
-/// What is wrong where `boards` boards of `rig` are attached and its layout is this one, and what
-/// to do: "single" puts both into one place, by which every figure would be wrong. Empty: nothing.
+/// Problem where `boards` boards of `rig` are attached and its layout is this one, and the
+/// remedy: "single" puts both into one place, by which every figure would be wrong. Empty: nothing.
 std::string ProblemWith(const stream::BoardLayout& layout, std::size_t boards,
                         const std::string& rig);
 

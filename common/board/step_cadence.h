@@ -4,7 +4,7 @@
 
 namespace footing::board {
 
-/// What a heel rise must exceed.
+/// Borders that a heel rise must exceed.
 struct HeelRiseBorders {
   double forward_m = 0;   ///< How far the COP goes towards the toes.
   double overshoot = 0;   ///< By which share of the weight the load exceeds it.
@@ -50,7 +50,7 @@ struct FootLoad {
 struct Stance {
   double load_n = 0;
   double left_share = 0.5;
-  double forward_m = 0;  ///< Of the COP, in W; 0 where neither foot has one.
+  double forward_m = 0;  ///< COP along x of W; 0 where neither foot has one.
 };
 Stance StanceOn(const FootLoad& left, const FootLoad& right);
 
@@ -88,8 +88,8 @@ class StepCadence {
   bool stepping() const { return steps_ >= 2; }
   /// Whether this step takes no longer than those before so far.
   bool on_time() const { return time_s_ - changed_s_ <= step_s_; }
-  /// Of one foot, half the steps a second; meaningful while stepping. A step that takes longer than
-  /// those before shows it before its end.
+  /// Frequency of one foot, half the steps a second; meaningful while stepping. A step that takes
+  /// longer than those before shows it before its end.
   double frequency_hz() const;
   /// The same of the last two steps alone, without the present one.
   double last_frequency_hz() const { return 1 / (2 * step_s_); }

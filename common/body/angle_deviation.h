@@ -19,20 +19,20 @@ struct AngleDeviation {
 };
 
 inline constexpr double kBentKneeDeg = 30;
-/// What the figures are and where they come from, in one sentence for the exports.
+/// Meaning and source of the figures, in one sentence for the exports.
 std::string_view AngleDeviationSource();
 
-/// Of the coordinates of joint_angles::JointAngles, both sides alike: "hip_flexion", ...
+/// Deviations of the coordinates of joint_angles::JointAngles, both sides alike: "hip_flexion", ...
 std::span<const AngleDeviation> CoordinateDeviations();
-/// Of a column, such as "hip_flexion_r"; nothing where it is not an angle.
+/// Deviation of a column, such as "hip_flexion_r"; nothing where it is not an angle.
 std::optional<AngleDeviation> CoordinateDeviation(std::string_view column);
 
-/// Of the orientation of links in W, as the angle of the rotation between estimate and truth:
-/// "pelvis", "thigh", ...
+/// Deviations of the orientation of links in W, as the angle of the rotation between estimate and
+/// truth: "pelvis", "thigh", ...
 std::span<const AngleDeviation> LinkDeviations();
-/// Of each link of a skeleton of a person, by the names and parents of its links (a parent comes
-/// first; -1: the root). A link without a landmark has that of the link that it hangs on. Empty
-/// where this is not the skeleton of a person.
+/// Deviation of each link of a skeleton of a person, by the names and parents of its links (a
+/// parent comes first; -1: the root). A link without a landmark has that of the link that it hangs
+/// on. Empty where this is not the skeleton of a person.
 std::vector<AngleDeviation> DeviationsOfLinks(std::span<const std::string> names,
                                               std::span<const int> parents);
 

@@ -442,7 +442,7 @@ constexpr double kRootOverHips = 0.058, kRootBehindHips = 0.020, kHalfHips = 0.0
 constexpr double kBackBone = 0.0665, kNeckBone = 0.057;
 constexpr double kHalfShoulders = 0.105;
 constexpr double kAnkleHeight = 0.040, kBallHeight = 0.015, kAnkleToBall = 0.075, kToes = 0.038;
-constexpr double kSplayDeg = 20;  ///< Of the legs at rest.
+constexpr double kSplayDeg = 20;  ///< Splay of the legs at rest.
 
 std::vector<Bone> Bones(Sex sex) {
   const auto length = [sex](Segment segment) { return Parameters(segment, sex).length_of_stature; };

@@ -17,6 +17,7 @@ namespace footing::body {
 
 enum class Sex { kFemale, kMale, kMean };
 
+/// Rigid segments of the body; a segment of a limb stands for both sides.
 enum class Segment {
   kHead,        ///< Cervicale (C7) to vertex, the neck included.
   kUpperTrunk,  ///< Cervicale to xiphion.
@@ -42,7 +43,7 @@ struct SegmentParameters {
   double longitudinal_radius;  ///< and the long axis.
 };
 
-/// Of one sex, or the mean of both. Masses sum to 1 with the limbs counted twice.
+/// Parameters of one sex, or the mean of both. Masses sum to 1 with the limbs counted twice.
 SegmentParameters Parameters(Segment segment, Sex sex);
 
 /// Centre of mass of a part of the trunk over the line from mid-hip (0) to mid-shoulder (1), and
@@ -57,7 +58,7 @@ double StatureOfLengths(Sex sex);
 /// Mid-hip to mid-shoulder over standing height.
 double TrunkOfStature(Sex sex);
 
-/// What moves rigidly with one joint's frame.
+/// Mass that moves rigidly with one joint's frame.
 struct JointMass {
   double mass_kg = 0;
   Eigen::Vector3d com_J = Eigen::Vector3d::Zero();      ///< m.
@@ -73,6 +74,7 @@ struct Body {
   double height_m = 0;
 };
 
+/// Size and mass of a person, from which a body is made.
 struct PersonParameters {
   double mass_kg = 75;
   /// Standing height; without it, it follows from the lengths of legs and trunk.

@@ -18,7 +18,7 @@ struct Kinematics {
 
   std::vector<Eigen::Matrix3d> R_WJ;
   std::vector<Eigen::Vector3d> p_WJ;    ///< m.
-  std::vector<Eigen::Vector3d> axis_W;  ///< Of each degree of freedom: the axis of its motion.
+  std::vector<Eigen::Vector3d> axis_W;  ///< Axis of motion of each degree of freedom.
 };
 
 /// Velocities of all joints' frames, of their origins.
@@ -104,9 +104,10 @@ struct PointTarget {
   double weight = 1;                              ///< Not negative.
 };
 
+/// Settings of a pose fit: its end, and a pull of coordinates towards a neutral pose.
 struct FitOptions {
   int iterations = 10;  ///< At most.
-  /// What it costs a coordinate to be away from `neutral`, against the points: m/rad (of the root's
+  /// Cost for a coordinate to be away from `neutral`, against the points: m/rad (of the root's
   /// position: 1). Coordinates that no point shows go there. Null: 0.01 each.
   const Eigen::VectorXd* hold = nullptr;
   const Eigen::VectorXd* neutral = nullptr;  ///< Null: the pose at the start.
@@ -131,7 +132,7 @@ class PoseFit {
     double points = 0;   ///< Cost of the points, m².
     double cost = 0;     ///< The same and what holds the coordinates.
     double gain = 0;     ///< By which the last step lowered the cost.
-    double damping = 0;  ///< Of the next step, relative to H's diagonal.
+    double damping = 0;  ///< Damping of the next step, relative to H's diagonal.
   };
 
   void SetHold(const FitOptions& options, const Eigen::Ref<const Eigen::VectorXd>& q);
@@ -176,10 +177,13 @@ struct CompositeMasses {
   std::vector<Eigen::Matrix3d> inertia_W;  ///< About the body's C; kg m^2.
 };
 
+/// Centre of mass of the whole body in W, m.
 Eigen::Vector3d CentreOfMass(const Body& body, const Kinematics& at);
 
+/// Momentum in a pose, from the velocities of the joints' frames.
 Momentum ComputeMomentum(const Body& body, const Kinematics& at, const JointVelocities& velocities);
 
+/// Its time derivative, from velocities and accelerations of the joints' frames.
 MomentumRate ComputeMomentumRate(const Body& body, const Kinematics& at,
                                  const JointVelocities& velocities,
                                  const JointAccelerations& accelerations);

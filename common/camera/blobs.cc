@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kWidestHue = 0.577;  // tan 30 degrees.
 constexpr double kColourOff = 0.25;   // Limb and gradient change a sphere's light by 0.15.
-constexpr int kUnit = 32;             // Of the integer weights.
+constexpr int kUnit = 32;             // Unit of the integer weights.
 
 /// Chroma along a hue and across it as integer sums, DN times kUnit.
 struct HueWeights {

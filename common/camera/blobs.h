@@ -31,7 +31,7 @@ struct QuadWindow {
   int left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// Of a whole image.
+/// Window of a whole image.
 QuadWindow Whole(const Image& image);
 
 /// Fills a window of `quads`, whose memory is used again; what is outside of it is undefined.

@@ -62,7 +62,8 @@ constexpr double kMostScaleOff = 0.02;
 /// (footing-eval calibration), and beyond this once in some 700 calibrations.
 constexpr double kMostTiltRad = DegreesToRadians(4);
 constexpr double kMostTurnSdRad = DegreesToRadians(1);
-/// Of a mark's residual over its standard deviation; noise reaches it once in some thousand marks.
+/// Largest ratio of a mark's residual to its standard deviation; noise reaches it once in some
+/// thousand marks.
 constexpr double kMostDeviations = 4;
 constexpr double kSureDeviations = 3;
 
@@ -252,8 +253,8 @@ struct Sums {
   }
 };
 
-/// Of a point's depth: half its variance is taken as common to all points (blur and limb of the
-/// camera file, light from within the sphere), half as its own (its pixels).
+/// Share of the variance of a point's depth that is common to all points (blur and limb of the
+/// camera file, light from within the sphere); the other half is its own (its pixels).
 constexpr double kCommonShare = 0.5;
 
 /// One standard deviation of what is common, along the point's ray.
@@ -420,7 +421,7 @@ Eigen::Isometry3d PoseOf(const Places& places, const Vector3d& p_WO_m) {
   return X_CW.inverse();
 }
 
-/// What noise of the places does to turn and shift, by differences.
+/// Covariance of turn and shift from the noise of the places, by differences.
 Covariance CovarianceOf(const Places& places, const ThreePoses& poses) {
   constexpr double kStepM = 1e-6;
   const Eigen::Isometry3d X_WC = PoseOf(places, poses.p_WO_m);

@@ -22,7 +22,7 @@ struct SeenPoint {
 /// A sphere on a point whose place in W is known.
 struct SeenMark {
   std::string name;
-  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Of the sphere's centre.
+  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Centre of the sphere.
   SeenPoint seen;
 };
 
@@ -33,10 +33,11 @@ struct SeenPlumb {
   double tilt_rad = 0;  ///< Between the controller's long axis and the vertical.
 };
 
+/// All that a calibration of the camera's pose takes.
 struct Observations {
   std::vector<SeenMark> marks;
   std::vector<SeenPlumb> plumbs;
-  double placement_sd_m = 0.001;  ///< Of the sphere on a mark, per axis.
+  double placement_sd_m = 0.001;  ///< Standard deviation of the sphere's place on a mark, per axis.
 };
 
 /// Frames of a sphere at rest that are enough for a mean: half a second of a camera at 60 Hz.
@@ -53,9 +54,10 @@ using Covariance = Eigen::Matrix<double, 6, 6>;
 /// An estimated pose, and how well what was seen fits it.
 struct CameraPose {
   Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
-  /// Of the turn about W's axes, rad, and of W's origin, m: a point p is off by turn x p + shift.
+  /// Covariance of the turn about W's axes, rad, and of W's origin, m: a point p is off by turn x p
+  /// + shift.
   Covariance covariance = Covariance::Zero();
-  std::vector<double> residuals_m;  ///< Of each mark.
+  std::vector<double> residuals_m;  ///< Residual of each mark.
   double residual_rms_m = 0;
   double scale = 1;  ///< True lengths over those that the camera sees.
   double scale_sd = 0;
@@ -78,8 +80,8 @@ CameraPose Fit(const Observations& observations);
 /// 1 degree.
 Result<CameraPose> Calibrate(const Observations& observations);
 
-/// What a tracker saw in its own frame, of what footingd published of it in W. Nothing where the
-/// point was not seen, or the tracker has no frame of its own.
+/// Sight of a tracker in its own frame, from the sample that footingd published of it in W. Nothing
+/// where the point was not seen, or the tracker has no frame of its own.
 std::optional<SeenPoint> InTrackerFrame(const stream::HandSample& sample);
 
 /// The same sight by another calibration. A sample of a tracker without a frame stays as it is.
@@ -92,7 +94,7 @@ struct ThreePoses {
   Eigen::Vector3d p_WO_m{0, 0, 0};  ///< Where in W the sphere was in the first pose.
   /// Distances of the other two from the first, where they are known; 0: not known.
   double ahead_m = 0, left_m = 0;
-  double placement_sd_m = 0.025;  ///< Of a hand that holds a pose in the air, per axis.
+  double placement_sd_m = 0.025;  ///< Deviation of a hand that holds a pose, per axis.
 };
 
 /// x points from the first place to the second, and the third is on y's side. Refuses places nearer
@@ -104,7 +106,7 @@ Result<CameraPose> FromThreePoses(const ThreePoses& poses);
 /// A point on a board's surface that a sphere is held on.
 struct BoardMark {
   std::string name;                ///< As a person finds it: "front left, left board".
-  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Of the centre of a sphere that lies on it.
+  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Centre of a sphere that lies on it.
 };
 
 /// Four marks on each board, over its load cells, whose places the layout and the board's geometry

@@ -264,12 +264,12 @@ using disc::Sample, disc::Solution, disc::State;
 
 constexpr int kMostPixels = 700, kMostPixelsMoving = 400;  // A moving one costs twice as much.
 constexpr double kFarBlurs = 4;       // Beyond the edge; the background needs no more.
-constexpr double kMaybeMoves = 13.3;  // Of chi² with four degrees: 1 % of spheres at rest.
+constexpr double kMaybeMoves = 13.3;  // Chi² of four degrees; 1 % of spheres at rest exceed it.
 constexpr double kSurelyMoves = 40;
 constexpr double kLeastMotionPx = 0.4;
 constexpr double kNoMotionSds = 8;  // A misfit of a part of the pixels that motion never has.
-constexpr double kFastestSds = 8;   // Of a hand's speed: the start of a fit is held to that.
-// Of a smaller sphere what hides a part looks like its edge. A misfit that nothing explains is then
+constexpr double kFastestSds = 8;   // Deviations of a hand's speed; limits the start of a fit.
+// On a smaller sphere an occluder looks like its edge. A misfit that nothing explains is then
 // taken for coherent: it can move each of three parameters by the root of a third of its chi².
 constexpr double kSmallBlurs = 5;
 constexpr int kMostHidden = kSectors / 2;  // With less of the edge, motion cannot be measured.
@@ -337,7 +337,7 @@ class Strategy {
   }
 
   bool MayMove() const { return !start_.is_unlikely && !IsMostlyHidden(); }
-  /// Of a fit of the whole sphere where edges are missing.
+  /// Limit for a fit of the whole sphere where edges are missing.
   double MostSdsOfCut() const { return IsSmall() ? kGoodSds : kPoorSds; }
   bool IsMostlyHidden() const { return disc::HiddenSectors(start_.reach) > kMostHidden; }
   int MostPixels() const {
@@ -416,7 +416,7 @@ class Strategy {
     return used;
   }
 
-  /// Of fits to a part of the pixels, those that are likely, the likeliest last.
+  /// Fits to a part of the pixels: those that are likely, the likeliest last.
   std::vector<Mode> Likely(const std::vector<State>& starts) {
     fitter_.Use(disc::Thinned(moving_pixels_, kSomePixels));
     std::vector<Mode> modes;
@@ -484,8 +484,8 @@ class Strategy {
   disc::PixelScale scale_;
   Fitter fitter_;
   State begin_;
-  std::vector<Sample> pixels_;         // Of a sphere at rest, all that were collected.
-  std::vector<Sample> moving_pixels_;  // Of one that moves.
+  std::vector<Sample> pixels_;         // All that were collected, for a sphere at rest.
+  std::vector<Sample> moving_pixels_;  // The same for a moving sphere.
   std::optional<Fit> best_;
   double clipped_share_ = 0;
   bool is_behind_edge_ = false;
@@ -501,8 +501,8 @@ std::optional<DiscFit> FitDisc(const Image& image, const LocalSlopes& slopes,
 
 namespace {
 
-constexpr double kEdgeSdPx = 0.5;  // Of one edge, found between quads.
-// What all edges share: a small blurred disc beside a brighter thing seems smaller or larger.
+constexpr double kEdgeSdPx = 0.5;  // Standard deviation of one edge, found between quads.
+// Error that all edges share: a small blurred disc beside a brighter thing seems smaller or larger.
 constexpr double kRadiusSdPx = 0.4;
 constexpr double kQuadPx = 2;  // Rays that are nearer to each other see the same quads.
 constexpr std::size_t kFewestEdges = 8;

@@ -17,12 +17,13 @@ namespace footing::sphere {
 /// a ray's coordinates are (s, t, 1).
 struct Cone {
   Eigen::Vector2d axis{0, 0};  ///< Slopes of its axis.
-  double tangent = 0;          ///< Of its half angle.
+  double tangent = 0;          ///< Tangent of its half angle.
 };
 
+/// A cone fitted to points on a silhouette.
 struct ConeFit {
   Cone cone;
-  std::vector<bool> inliers;  ///< Of the points.
+  std::vector<bool> inliers;  ///< Whether each point fits.
 };
 
 /// Least squares on unit rays u of the silhouette: u . w = 1 with w along the axis and |w| =
@@ -58,15 +59,15 @@ class LocalSlopes {
  private:
   Eigen::Vector2d middle_;
   double half_px_;
-  Eigen::Matrix<double, 2, 9> terms_;  ///< Of 1, x, x², y, xy, x²y, y², xy², x²y².
+  Eigen::Matrix<double, 2, 9> terms_;  ///< Coefficients of 1, x, x², y, xy, x²y, y², xy², x²y².
   Eigen::Matrix2d scale_;
   Eigen::Matrix3d R_CL_;
 };
 
 /// Brightness of a blurred disc at a distance from its middle, and how it changes.
 struct ProfileValue {
-  float disc = 0;  ///< Of an even disc: 1 inside, 0 outside.
-  float limb = 0;  ///< Of a disc whose brightness is 1 - cos, 0 in the middle, 1 at the edge.
+  float disc = 0;  ///< Light of an even disc: 1 inside, 0 outside.
+  float limb = 0;  ///< Light of a disc whose brightness is 1 - cos, 0 in the middle, 1 at the edge.
   float disc_d = 0, limb_d = 0;        ///< Slopes along `beyond`.
   float disc_blur = 0, limb_blur = 0;  ///< Slopes along `blur`.
 };
@@ -99,12 +100,12 @@ using SectorReach = std::array<double, kSectors>;
 /// Number of the sector in which a direction lies, the first one around +u, then towards +v.
 int SectorOf(const Eigen::Vector2d& from);
 
-/// What is known of a sphere before the fit.
+/// Knowledge of a sphere before the fit.
 struct DiscStart {
   Contrast contrast;
-  Eigen::Vector2d middle_px{0, 0};  ///< Of its blob: the origin of the slopes.
+  Eigen::Vector2d middle_px{0, 0};  ///< Middle of its blob: the origin of the slopes.
   Cone cone;
-  /// Of each sector, seen from the cone's axis, the slope up to which the sphere is seen; infinite
+  /// For each sector, seen from the cone's axis, the slope up to which the sphere is seen; infinite
   /// where the cone's edge is.
   SectorReach reach{};
   std::vector<Eigen::Vector2d> edges;  ///< Slopes at which the light falls to the half.
@@ -119,13 +120,14 @@ struct DiscStart {
 /// The cone that explains the pixels best.
 struct DiscFit {
   Cone cone;
-  /// Of axis s, axis t and tangent; includes blur and limb within their deviations, and motion.
+  /// Covariance of axis s, axis t and tangent; includes blur and limb within their deviations, and
+  /// motion.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double blur_px = 0, limb = 0;
   Eigen::Vector2d motion_px{0, 0};  ///< Travel in the image during the exposure.
   double misfit = 0;                ///< Mean square residual over its expectation.
   double residual_share = 0;        ///< RMS residual over the contrast, weighted as the fit is.
-  double used_share = 0;            ///< Of the sectors.
+  double used_share = 0;            ///< Share of the sectors that the fit uses.
   /// Clutter looks so, too: partly hidden by an edge, or smaller than two blurs.
   bool is_doubtful = false;
   double clipped_share = 0;  ///< Pixels at the upper limit, of those inside.
@@ -157,11 +159,11 @@ inline constexpr double kSureColourOff = 0.2, kMostColourOff = 0.45;
 struct Candidate {
   LocalSlopes slopes;
   DiscStart start;
-  std::vector<bool> inliers;  ///< Of its edges.
+  std::vector<bool> inliers;  ///< Whether each edge fits the cone.
   bool is_compact = false;    ///< Its blob does not extend far beyond the cone.
   double colour_off = 0;      ///< From the sphere's own.
   double quality = 0;         ///< Share of the edge, less for another colour.
-  double radius_sd_px = 0;    ///< What its edges have in common, before a lamp.
+  double radius_sd_px = 0;    ///< Standard deviation that its edges have in common, before a lamp.
 };
 
 /// Where candidates are looked for.

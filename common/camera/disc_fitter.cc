@@ -594,7 +594,7 @@ Eigen::Matrix3d UnseenMotion(const MotionEvidence& evidence, double motion_sd_px
 namespace {
 
 constexpr double kRingBlurs = 2.5;  // Farther out there is no light of the sphere.
-constexpr double kWidestRange = 8;  // Of one level's noise; ten pixels reach three or four.
+constexpr double kWidestRange = 8;  // Deviations of a level's noise; ten pixels reach 3 to 4.
 constexpr double kLeastApart = 5;   // Deviations; below that, one level for all has less noise.
 
 }  // namespace

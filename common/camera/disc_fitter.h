@@ -15,7 +15,7 @@ namespace footing::sphere::disc {
 
 inline constexpr int kLevels = kShape + kMotion;  // Where those of the first channel are.
 inline constexpr int kParameters = kLevels + 6;
-inline constexpr int kOwn = kShape + 2;  // What one pixel of a sphere at rest depends on.
+inline constexpr int kOwn = kShape + 2;  // Parameters of one pixel of a sphere at rest.
 inline constexpr int kOwnMoving = kOwn + kMotion;
 inline constexpr double kHuber = 2.5;
 
@@ -29,7 +29,7 @@ struct Sample {
   int channel;
   int sector;
   double later = 0;   // When its row is exposed, after the row of the blob's middle, in exposures.
-  double behind = 0;  // What is behind the sphere there, less the state's `outside`, DN.
+  double behind = 0;  // Light behind the sphere there, less the state's `outside`, DN.
   // At the state that was evaluated last.
   double beyond = 0;    // Blurs outside of the edge.
   double residual = 0;  // Over its deviation.
@@ -51,8 +51,9 @@ struct Block {
 /// When a block's pixels are exposed after the row of a state's axis, in exposures.
 Lane AfterAxis(const Block& block, const State& state, const PixelScale& scale);
 
+/// Packs samples into blocks for vector arithmetic.
 void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks);
-/// What was evaluated, back to the samples.
+/// Copies the evaluated values back to the samples.
 void ToSamples(const std::vector<Block>& blocks, std::vector<Sample>& samples);
 
 /// How pixels depend on their own parameters (`kSize` is kOwn or kOwnMoving): the model's, then
@@ -76,7 +77,7 @@ template <int kSize>
 class Equations {
  public:
   void Add(const Rows<kSize>& rows, std::size_t channel);
-  /// Of all parameters; those that take no part get a 1 on the diagonal.
+  /// Equations of all parameters; those that take no part get a 1 on the diagonal.
   void Assemble(Normal& normal, Right& right) const;
 
  private:
@@ -93,24 +94,24 @@ inline constexpr std::size_t kSomePixels = 200;  // Enough to choose between exp
 /// How well a solution explains the pixels.
 struct Solution {
   State state;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of axis and tangent.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Errors of axis and tangent.
   double misfit = 0;          ///< Mean square residual over its expectation.
   double misfit_sds = 0;      ///< By how many of its deviations that is more than 1.
-  double excess_chi2 = 0;     ///< Of the residuals, beyond their expectation.
+  double excess_chi2 = 0;     ///< Chi² of the residuals beyond its expectation.
   double residual_share = 0;  ///< RMS residual over the contrast.
-  double log_evidence = 0;    ///< Of the pixels, but for a constant; Laplace's approximation.
+  double log_evidence = 0;    ///< Log evidence but for a constant; Laplace's approximation.
   std::size_t pixels = 0;
 };
 
-/// Of several explanations of the same pixels: their mean by evidence, and how far they are apart
-/// in its covariance. The rest is the likeliest one's.
+/// Mean by evidence of several explanations of the same pixels, with their distances in its
+/// covariance. The rest is the likeliest one's.
 Solution Mean(const std::vector<Solution>& modes);
 
-/// What the residuals of a sphere at rest say of motion.
+/// Evidence of motion in the residuals of a sphere at rest.
 struct MotionScore {
-  double chi2 = 0;                  ///< Of four degrees of freedom if it is at rest.
+  double chi2 = 0;                  ///< Chi² with four degrees of freedom if it is at rest.
   Eigen::Vector2d motion_px{0, 0};  ///< To begin with; its sign is uncertain.
-  /// What a motion that is too small to be seen adds to the covariance of axis and tangent.
+  /// Covariance of axis and tangent that a motion too small to be seen adds.
   Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
 };
 
@@ -139,12 +140,12 @@ class Fitter {
   std::optional<Solution> Solve(State state, bool moves, int rounds);
   /// Sets the residuals of the samples, of a sphere at rest.
   void Evaluate(const State& state);
-  /// Of the solution that was found last, of a sphere at rest.
+  /// Score of the solution that was found last, of a sphere at rest.
   MotionScore ScoreMotion(const State& state);
 
   const std::vector<Sample>& samples() const { return samples_; }
   void Use(std::vector<Sample> samples) { samples_ = std::move(samples); }
-  /// Of the pixels inside, those at the sensor's limit.
+  /// Share of the pixels inside that are at the sensor's limit.
   double clipped_share() const { return inside_ > 0 ? static_cast<double>(clipped_) / inside_ : 0; }
   /// One blur, in slopes.
   double Blur() const { return settings_.profile.blur_px * scale_.Along(Eigen::Vector2d::UnitX()); }
@@ -170,19 +171,19 @@ class Fitter {
   const PixelScale& scale_;
   const LitQuads& lit_;
   double motion_sd_px_;
-  double growth_sd_ = 1;  // Of what was solved last.
+  double growth_sd_ = 1;  // Deviation of `growth` in the last solution.
   std::vector<Sample> samples_;
   std::vector<Block> blocks_;  // The same, as they were solved last.
   int inside_ = 0, clipped_ = 0;
-  Normal normal_;  // Of the state that was solved last.
+  Normal normal_;  // Normal equations at the state that was solved last.
 };
 
-/// What the residuals of a sphere at rest say of motion, and what motion does to its fit.
+/// Evidence of motion in the residuals of a sphere at rest, and the effect of motion on its fit.
 struct MotionEvidence {
   /// Blur with twice the angle, px: its cosine and sine; travel that the rolling shutter shows, px.
   Eigen::Vector4d change;
   Eigen::Matrix4d information;             ///< Inverse of the noise of these.
-  double blur_px = 0;                      ///< Of the sphere at rest.
+  double blur_px = 0;                      ///< Blur of the sphere at rest.
   Eigen::Vector3d per_blur;                ///< Axis and tangent by an even blur,
   Eigen::Matrix<double, 3, 2> per_travel;  ///< and by travel.
 };

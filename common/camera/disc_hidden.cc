@@ -11,17 +11,17 @@ namespace footing::sphere::disc {
 namespace {
 
 constexpr double kHiddenMargin = 2.5;       // Blurs from an occluder's edge.
-constexpr std::size_t kEdgeStep = 4;        // Of the places that come into question first.
+constexpr std::size_t kEdgeStep = 4;        // Step between the places that are tried first.
 constexpr std::size_t kEdgeStepHidden = 2;  // Where it is known which part of the edge is hidden.
-// Of those, that are tried; where edges are missing, more.
+// Number of those places that are tried; where edges are missing, more.
 constexpr std::size_t kMostPlaces = 3, kMostPlacesCut = 5;
 constexpr int kFewestHidden = 3;  // Sectors; one or two are noise.
 // A line through places that are not on the cone: how many there are at least, how far from it they
 // are, RMS, and the radius from which on rays are far apart.
 constexpr std::size_t kFewestPlaces = 5;
 constexpr double kStraightBlurs = 0.6, kLargeBlurs = 5;
-constexpr double kHopelessSds = 20;    // Of the coarse places; a finer one gains some 10.
-constexpr double kMostResidual2 = 36;  // Of a pixel.
+constexpr double kHopelessSds = 20;    // Deviations of coarse places; a finer one gains some 10.
+constexpr double kMostResidual2 = 36;  // Limit for one pixel, in squared deviations.
 
 /// Akaike's: each pixel that is left out has a level of its own, which is a parameter.
 double Cost(const Solution& solution, std::size_t all) {

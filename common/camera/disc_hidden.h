@@ -19,8 +19,7 @@ struct Fit {
 int HiddenSectors(const SectorReach& reach);
 bool IsCut(const SectorReach& reach);
 
-/// What is left out: beyond a line through `at`, on the side to which `away`, a unit vector,
-/// points.
+/// Hidden part: beyond a line through `at`, on the side to which `away`, a unit vector, points.
 struct StraightEdge {
   Eigen::Vector2d at, away;
 };

@@ -5,7 +5,7 @@
 namespace footing::sphere::disc {
 namespace {
 
-/// Of both discs, for each pixel.
+/// Profiles of both discs, for each pixel.
 struct Profiles {
   Lane disc, limb, disc_d, limb_d, disc_blur, limb_blur;
 };

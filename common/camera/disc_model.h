@@ -19,14 +19,15 @@ using Shape = Eigen::Matrix<double, kShape, 1>;
 inline constexpr int kBlock = 32;
 using Lane = Eigen::Array<float, kBlock, 1>;
 
+/// All parameters of the model of a sphere's image.
 struct State {
   Shape shape;                                // As kShape lists.
   Eigen::Vector2d motion_px{0, 0};            // Zero for a sphere at rest.
-  double growth = 0;                          // Of the tangent, a share: it comes nearer.
-  std::array<double, 3> inside{}, outside{};  // Of each channel, DN.
+  double growth = 0;                          // Relative growth of the tangent: it comes nearer.
+  std::array<double, 3> inside{}, outside{};  // Levels of each channel, DN.
 };
 
-/// What pixels are in slopes, and when their rows are exposed.
+/// Size of pixels in slopes, and the times at which their rows are exposed.
 class PixelScale {
  public:
   /// `rows_per_exposure`: a row's time over the exposure.
@@ -60,19 +61,21 @@ class PixelScale {
   Eigen::Vector2d down_;
 };
 
-/// What the model says of pixels, with its slopes along its own parameters.
+/// Light of pixels by the model, with its slopes along its own parameters.
 struct Modelled {
-  Lane light;   // Of the sphere, over the level inside.
+  Lane light;   // Light of the sphere, over the level inside.
   Lane cover;   // Share of the pixel that the sphere hides: it is opaque.
   Lane beyond;  // Blurs outside of the edge.
   std::array<Lane, kShape> light_slope;
   std::array<Lane, 4> cover_slope;  // Along the first four parameters.
 };
 
-/// Of pixels at slopes (s, t), at the sphere's place in the middle of the exposure of its middle.
+/// Models pixels at slopes (s, t), at the sphere's place in the middle of the exposure of its
+/// middle.
 void Model(const Lane& s, const Lane& t, const State& state, const PixelScale& scale,
            const ProfileTable& table, Modelled& result);
 
+/// The same for a moving sphere, with its slopes along the motion.
 struct ModelledMoving : Modelled {
   std::array<Lane, kMotion> light_motion, cover_motion;  // Slopes along the motion.
 };

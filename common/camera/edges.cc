@@ -12,10 +12,10 @@ using Levels = std::array<double, 3>;
 
 constexpr double kLeastContrastDn = 6;
 constexpr double kInsideQuantile = 0.6;
-constexpr double kFullDn = 255;             // Of the sensor.
-constexpr double kLeastOutsideShare = 0.2;  // Of the ring: without a lamp.
+constexpr double kFullDn = 255;             // Upper limit of the sensor.
+constexpr double kLeastOutsideShare = 0.2;  // Share of the ring: without a lamp.
 
-/// What the fit sees of a quad: its three colours, or of YUYV its luma, three times.
+/// Levels of a quad for the fit: its three colours, or of YUYV its luma, three times.
 Levels LevelsAt(const Image& image, const Quads& quads, int x, int y) {
   if (image.format == PixelFormat::kSgrbg8) {
     const std::size_t at = quads.At(x, y);

@@ -17,7 +17,7 @@ struct Target {
   /// Red, green and blue as the camera shows it at the locked exposure, DN. The hue decides which
   /// sphere is which; 30 degrees apart is enough.
   Eigen::Vector3d colour_dn{170, 40, 150};
-  double radius_m = 0.0225;  ///< Of a PS Move.
+  double radius_m = 0.0225;  ///< Radius of a PS Move.
 };
 
 /// How a small luminous sphere looks through this camera. Calibrated per controller and camera
@@ -36,7 +36,7 @@ struct PixelNoise {
   double dn_per_electron = 0.03;
   double correlation = 1;
 
-  /// Of a dark pixel whose neighbours are independent.
+  /// Variance of a dark pixel whose neighbours are independent.
   double DarkVariance() const { return read_dn * read_dn + 1.0 / 12; }
 };
 
@@ -46,9 +46,10 @@ struct Shutter {
   double exposure_s = 0.004;
   double row_s = 0.0155 / 479;  ///< From one row to the next one.
   double period_s = 1.0 / 60;   ///< From one frame to the next one.
-  double speed_sd_mps = 1;      ///< Of a hand, along each axis, as far as nothing is known of it.
+  double speed_sd_mps = 1;      ///< Standard deviation of an unknown hand's speed, along each axis.
 };
 
+/// Properties of a camera on which the finder depends.
 struct Settings {
   Profile profile;
   PixelNoise noise;
@@ -75,11 +76,11 @@ Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner);
 /// Where the light falls to the half between inside and outside along rays from a blob's middle.
 struct Edges {
   Contrast contrast;
-  std::vector<Eigen::Vector2d> pixels;  ///< Of the rays that meet an edge.
+  std::vector<Eigen::Vector2d> pixels;  ///< Ends of the rays that meet an edge.
   std::vector<bool> at_lamp;            ///< Those of them that meet a lamp.
 };
 
-/// What is around a blob.
+/// Surroundings of a blob.
 enum class Surroundings {
   kAny,
   kLamp,  ///< In part: what is outside is the rest, and rays may end where white light begins.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostBlobs = 6;
 constexpr std::size_t kMostFits = 3;
-constexpr double kLowShare = 0.25;  // Of the colour's own chroma.
+constexpr double kLowShare = 0.25;  // Share of the colour's own chroma.
 constexpr double kGoodQuality = 0.7;
 constexpr double kClearQuality = 0.88;  // Nothing else in sight is as bright and as round.
 constexpr double kLeastQuality = 0.25, kLeastQualityByEdge = 0.45;
@@ -80,7 +80,7 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   return estimate;
 }
 
-/// Of the distance.
+/// Standard deviation of the distance, as a share of it.
 double DepthSdShare(const Estimate& estimate) {
   const Eigen::Vector3d along = estimate.p_C_m.normalized();
   return std::sqrt(along.dot(estimate.covariance_m2 * along)) / estimate.p_C_m.norm();
@@ -172,7 +172,7 @@ std::optional<Finder::Found> Finder::Search(const Image& image, std::size_t sphe
   return beside_lamp ? beside_lamp : found;
 }
 
-/// Of a light that is certainly the sphere's by colour and edge.
+/// Estimate from a light that is certainly the sphere's by colour and edge.
 std::optional<Finder::Found> Finder::ByEdge(const Target& target,
                                             const Candidate& candidate) const {
   if (candidate.quality < kLeastQualityByEdge || candidate.colour_off > kSureColourOff ||
@@ -188,8 +188,8 @@ std::optional<Finder::Found> Finder::ByEdge(const Target& target,
   return Found{estimate, candidate.quality};
 }
 
-/// Of a light that touches a lamp: without what the lamp lights or by its edge, as is surer. Its
-/// size must be that of its blob. It is as doubtful as one by its edge alone.
+/// Estimate from a light that touches a lamp, without what the lamp lights or by its edge, as is
+/// surer. Its size must be that of its blob. It is as doubtful as one by its edge alone.
 std::optional<Finder::Found> Finder::BesideLamp(const Image& image, const Target& target,
                                                 const std::vector<Blob>& blobs) const {
   for (const Blob& blob : blobs) {

@@ -19,11 +19,11 @@ struct Estimate {
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
   double confidence = 0;            ///< 0 to 1: how sure it is that this is the sphere, seen well.
   Eigen::Vector2d centre_px{0, 0};  ///< Where its centre appears.
-  double radius_px = 0;             ///< Of its disc.
+  double radius_px = 0;             ///< Radius of its disc.
   bool is_saturated = false;        ///< Light at the sensor's limit: depth is wrong by centimetres.
   bool is_occluded = false;         ///< Part of the edge is hidden, or beyond the image.
   bool is_by_edge = false;          ///< No fit explains its light: its edge alone says where it is.
-  double seen_share = 0;            ///< Of its edge.
+  double seen_share = 0;            ///< Share of its edge that is seen.
   double misfit = 0;                ///< Mean square residual over the noise; about 1.
   double residual_share = 0;        ///< RMS residual over the contrast.
   double colour_off = 0;            ///< Its colour's distance from the target's, over its length.
@@ -57,7 +57,7 @@ class Finder {
  private:
   struct Found {
     Estimate estimate;
-    double quality = 0;  ///< Of its candidate.
+    double quality = 0;  ///< Quality of its candidate.
   };
   /// Where a sphere was.
   struct Last {

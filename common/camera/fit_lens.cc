@@ -13,12 +13,12 @@
 namespace footing::lens_calibration {
 namespace {
 
-constexpr double kDarkShare = 0.75;  // Of the mean around, to which the dots belong too.
+constexpr double kDarkShare = 0.75;  // Share of the mean around, to which the dots belong too.
 constexpr int kWindowShare = 8;      // The mean is of this part of the width.
 constexpr std::size_t kLeastPixels = 12, kMostPixels = 6000;
 constexpr double kLeastFill = 0.75, kMostFill = 1.2, kMostAspect = 2.5;
-constexpr double kMostAreaRatio = 2.5;   // Of neighbours.
-constexpr double kOffPrediction = 0.35;  // Of the step.
+constexpr double kMostAreaRatio = 2.5;   // Ratio of neighbours' areas.
+constexpr double kOffPrediction = 0.35;  // Distance from the predicted place, share of the step.
 
 /// Light of every 2 x 2 pixels, which a mosaic mixes alike everywhere; its pixel (0, 0) is at
 /// (0.5, 0.5) of the image.
@@ -50,7 +50,7 @@ class Grey {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(u);
   }
-  /// Of all pixels above and left of a corner.
+  /// Sum of all pixels above and left of a corner.
   double SumTo(int u, int v) const {
     return sums_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_ + 1) +
                  static_cast<std::size_t>(u)];
@@ -236,7 +236,7 @@ namespace {
 constexpr std::size_t kLeastViews = 6;
 constexpr double kMostRmsPx = 0.5;
 constexpr double kLeastCovered = 0.6;
-constexpr double kMostFocalSd = 0.01;  // Of the focal length.
+constexpr double kMostFocalSd = 0.01;  // Share of the focal length.
 constexpr int kShared = 8, kOwn = 6;   // Parameters of the lens, and of a view.
 
 /// Where a sheet is: its columns and rows in C, in pitches.
@@ -371,7 +371,7 @@ class Adjustment {
     return fit;
   }
 
-  /// Of one view.
+  /// Residual of one view, RMS.
   double Rms(std::size_t i) const {
     double square = 0;
     for (const GridDot& dot : views_[i]) square += Residual(lens_, poses_[i], dot).squaredNorm();
@@ -439,7 +439,7 @@ std::string Hundredths(double value) {
   return std::to_string(all / 100) + "." + (rest.size() < 2 ? "0" : "") + rest;
 }
 
-/// What is wrong with a fit; empty when it can be used.
+/// Problem of a fit; empty when it can be used.
 std::string Doubt(const LensFit& fit, const Adjustment& adjustment, std::size_t views) {
   if (fit.rms_px > kMostRmsPx) {
     std::size_t worst = 0;
@@ -500,7 +500,7 @@ Result<LensFit> FitLens(const std::vector<View>& views, int width, int height) {
 
 namespace {
 
-constexpr double kNew = 0.025;    // Of the image's width, in one of six numbers.
+constexpr double kNew = 0.025;    // Share of the image's width, in one of six numbers.
 constexpr double kRests = 0.001;  // From one frame to the next.
 constexpr double kEnoughCovered = 0.75;
 

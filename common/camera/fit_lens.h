@@ -29,7 +29,7 @@ using View = std::vector<GridDot>;
 /// A fitted lens and how well it is known.
 struct LensFit {
   sphere::Lens lens;
-  double rms_px = 0;       ///< Of a dot's two coordinates together.
+  double rms_px = 0;       ///< RMS of a dot's two coordinates together.
   double largest_px = 0;   ///< The worst dot.
   double focal_sd_px = 0;  ///< Standard deviation of fx and fy, the larger one.
   double centre_sd_px = 0;
@@ -56,7 +56,7 @@ class ViewCollector {
   bool Take(const sphere::Image& image);
   bool is_complete() const;
   const std::vector<View>& views() const { return views_; }
-  /// What the person should do now, with how far it is.
+  /// Next action for the person, with the progress so far.
   std::string Advice() const;
 
  private:

@@ -10,10 +10,10 @@
 namespace footing::sphere {
 namespace {
 
-constexpr double kLeastRiseDn = 20;  // Of the sum of three colours, mean of 3 x 3 quads.
-constexpr double kSpotShare = 0.35;  // Of the brightest; a lens scatters less than that.
-constexpr double kRivalShare = 0.4;  // Of the sphere's light; a reflection on a table has less.
-constexpr double kLeastFill = 0.65;  // Of the box, as an ellipse; half a disc has 0.5.
+constexpr double kLeastRiseDn = 20;  // Rise of the sum of three colours, mean of 3 x 3 quads.
+constexpr double kSpotShare = 0.35;  // Share of the brightest; a lens scatters less than that.
+constexpr double kRivalShare = 0.4;  // Share of the sphere's light; a table reflects less.
+constexpr double kLeastFill = 0.65;  // Share of the box, as an ellipse; half a disc has 0.5.
 constexpr double kMostAspect = 1.6;
 constexpr int kLimitDn = 250;
 

@@ -16,6 +16,7 @@ enum class PixelFormat {
   kYuyv,    ///< Two bytes a pixel: luma of each, chroma of every two (BT.601, full range).
 };
 
+/// Bytes of one pixel in a row.
 inline int BytesPerPixel(PixelFormat format) { return format == PixelFormat::kYuyv ? 2 : 1; }
 
 /// A frame, borrowed; rows follow one another without padding. Pixel (0, 0) is the upper left one,
@@ -59,11 +60,11 @@ struct Blink {
   Eigen::Vector2d centre_px{0, 0};
   double radius_px = 0;
   Eigen::Vector3d colour_dn{0, 0, 0};  ///< Red, green and blue of its middle while it is lit.
-  double clipped_share = 0;            ///< Of its middle's pixels: at the sensor's limit.
+  double clipped_share = 0;            ///< Share of its middle's pixels: at the sensor's limit.
 };
 
-/// What is brighter in `lit` than in `dark`: one round spot, not darker than 20 DN. InvalidData
-/// says what else was there and what to do.
+/// Spot that is brighter in `lit` than in `dark`: round, only one, not darker than 20 DN.
+/// InvalidData says what else was there and what to do.
 Result<Blink> FindBlink(const Image& dark, const Image& lit);
 
 }  // namespace footing::sphere

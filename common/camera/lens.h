@@ -13,9 +13,9 @@ struct Lens {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
 };
 
-/// What is wrong with a lens, in one line; empty when it can be used: sizes even and from 32 to
-/// 4096, focal lengths from 0.2 to 20 widths, the principal point in the image, and a distortion
-/// that can be undone everywhere in the image.
+/// Problem of a lens, in one line; empty when it can be used: sizes even and from 32 to 4096, focal
+/// lengths from 0.2 to 20 widths, the principal point in the image, and a distortion that can be
+/// undone everywhere in the image.
 std::string Problem(const Lens& lens);
 
 /// x/z and y/z in C of what is seen at a pixel.

@@ -10,7 +10,7 @@
 #include "common/base/result.h"
 #include "common/stream/device.h"
 
-/// What footing-camera sees, for a person: reduced pictures with what was found in them. Its bytes
+/// Preview of footing-camera for a person: reduced pictures with what was found in them. Its bytes
 /// are in docs/camera.md.
 namespace footing::preview {
 
@@ -27,6 +27,7 @@ struct Circle {
   float u_px = 0, v_px = 0, radius_px = 0;
 };
 
+/// One sphere in a picture, seen or not.
 struct Sphere {
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
   Sight sight = Sight::kNothing;
@@ -42,8 +43,9 @@ struct RefusedLight {
   Circle circle;
 };
 
+/// One reduced frame with what was found in it.
 struct Picture {
-  std::uint64_t number = 0;     ///< Of the frame since the program's start.
+  std::uint64_t number = 0;     ///< Number of the frame since the program's start.
   std::int64_t exposed_ns = 0;  ///< The host's monotonic clock.
   int camera_width = 0, camera_height = 0;
   bool has_pose = false;   ///< The camera file says where the camera stands.
@@ -54,7 +56,7 @@ struct Picture {
   std::vector<std::uint8_t> rgb;  ///< Rows from the top, three bytes a pixel.
 };
 
-inline constexpr int kMaxSide = 1024;  ///< Of a picture, pixels.
+inline constexpr int kMaxSide = 1024;  ///< Longest side of a picture, pixels.
 inline constexpr std::size_t kMaxSpheres = 16, kMaxRefused = 64;
 inline constexpr std::size_t kMaxText = 512;
 inline constexpr std::size_t kHeaderBytes = 12;

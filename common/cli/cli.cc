@@ -121,7 +121,7 @@ std::string WrongValue(const std::string& text) {
          std::regex_replace(parts[3].str(), std::regex(","), ", ");
 }
 
-/// What is wrong with a command line, as one line.
+/// Problem of a command line, as one line.
 std::string Problem(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
   const bool has_subcommands =

@@ -6,7 +6,7 @@
 
 #include "common/base/result.h"
 
-/// What every program's command line has in common.
+/// Common parts of every program's command line.
 namespace footing::cli {
 
 /// A new parser with --version and the house's exit codes in its footer; help prints the default of
@@ -25,7 +25,7 @@ int Report(const Error& error);
 /// environment names no user.
 std::string UserAtHost();
 
-/// What a program's clients read when a signal ends it: "footingd is being stopped".
+/// Reason that a program's clients read when a signal ends it: "footingd is being stopped".
 std::string StopReason(const std::string& program, int signal);
 
 /// Program version, e.g. "0.1.0".

@@ -75,7 +75,7 @@ class Reader {
     if (problem_.empty()) problem_ = place_ + (key.empty() ? "" : ", key " + key) + ": " + what;
   }
 
-  /// Of all that was read; call it last.
+  /// Problem of all that was read; call it last.
   std::string Problem() {
     if (object_.is_object()) {
       for (const auto& [key, value] : object_.items()) {
@@ -176,7 +176,7 @@ void ReadSensor(Reader& reader, CameraFile& camera) {
   sphere::PixelNoise& noise = camera.settings.noise;
   if (const std::string format = reader.Text("format"); format == "YUYV") {
     camera.format = sphere::PixelFormat::kYuyv;
-    // What demosaicing does to a pixel; measured blur and noise belong into the file.
+    // Effects of demosaicing on a pixel; measured blur and noise belong into the file.
     profile.blur_px = 1.15;
     profile.blur_sd_px = 0.1;
     noise.correlation = 3;

@@ -17,7 +17,7 @@ constexpr double kReactionShare = 0.4;
 struct Row {
   Phase phase;
   const char* name;
-  double share;  // Of the whole time; scaled to the phases that there are.
+  double share;  // Share of the whole time; scaled to the phases that there are.
   bool body_devices;
   bool boards;
   const char* prompt;
@@ -130,7 +130,7 @@ void Acceptance::Take(const std::vector<stream::DeviceStatus>& devices, std::int
     }
     if (device.state == stream::DeviceState::kLost) continue;
     serial_of_[device.device] = device.serial;
-    // What a device reports of its link just after a replug says nothing about the run.
+    // The report of a device on its link just after a replug says nothing about the run.
     if (fresh || phase != Phase::kReplug) record.last = device;
     record.battery_low = record.battery_low || device.battery_low;
     record.slipped = record.slipped || device.slipped;
@@ -183,7 +183,7 @@ constexpr double kGapsPerMinute = 6;
 constexpr double kJitterMs = 40;
 constexpr double kRepeatShare = 0.6;
 constexpr double kClockSdMs = 6;
-constexpr double kStillShare = 0.2;  // Of the frames that may call standing still a motion.
+constexpr double kStillShare = 0.2;  // Largest share of frames that call standing still a motion.
 constexpr double kMovingShare = 0.7;
 constexpr double kWalkLeastHz = 0.5;
 constexpr double kRunLeastHz = 2;  // The gait paper's border between walking and running.

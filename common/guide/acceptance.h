@@ -17,11 +17,13 @@ namespace footing::guide {
 
 enum class Phase { kStill, kWalk, kRun, kJump, kQuiet, kLean, kStepping, kRumble, kLed, kReplug };
 
+/// Name of a phase in reports, and the phase of a name; nothing where no phase has it.
 const char* Name(Phase phase);
 std::optional<Phase> PhaseNamed(const std::string& name);
-/// What the person is asked to do.
+/// Instruction for the person.
 std::string Prompt(Phase phase);
 
+/// One phase of a run, with its duration.
 struct Planned {
   Phase phase = Phase::kStill;
   double duration_s = 0;
@@ -31,6 +33,7 @@ struct Planned {
 /// at least 4 s.
 std::vector<Planned> PlanOf(double minutes, bool body_devices, bool boards);
 
+/// Result of one check: its value against the bar that it must meet.
 struct Check {
   std::string name;  ///< With the serial behind it, where it is about one device.
   bool passed = false;
@@ -40,6 +43,7 @@ struct Check {
   std::string note;
 };
 
+/// Stretch of time of one phase, on footingd's clock.
 struct Span {
   Phase phase = Phase::kStill;
   std::int64_t from_ns = 0;
@@ -105,6 +109,7 @@ class Acceptance {
   std::map<Phase, std::map<std::string, std::vector<stream::BoardSample>>> boards_;
 };
 
+/// Whether every check passed.
 bool Passed(const std::vector<Check>& checks);
 
 }  // namespace footing::guide

@@ -51,6 +51,7 @@ inline constexpr double kWeighForS = 3;
 inline constexpr double kLeastMassKg = 10;
 inline constexpr double kMostMassKg = 200;
 
+/// Result of weighing a person on the boards.
 struct Weight {
   bool done = false;    ///< Quiet enough and plausible; else wait, or say what `note` says.
   bool passed = false;  ///< And within 3 % or 2 kg of the mass that was given, if any.

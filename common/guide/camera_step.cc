@@ -71,11 +71,11 @@ constexpr double kBroughtM = 0.1;
 /// elsewhere than on its mark is farther off.
 constexpr double kLengthOff = 0.25;
 constexpr double kMostTiltRad = DegreesToRadians(3);
-/// What a PS Move's calibrated accelerometer is off, at rest.
+/// Standard deviation of a PS Move's calibrated accelerometer, at rest.
 constexpr double kAccelerometerSdRad = DegreesToRadians(0.5);
 constexpr double kShortestM = 0.1, kLongestM = 0.3;  // From the mark to a sphere above it.
 
-/// Of the controller's long axis, y of its sensor frame; nothing when it is not at rest.
+/// Tilt of the controller's long axis, y of its sensor frame; nothing when it is not at rest.
 std::optional<double> TiltRad(const Situation& now, const SetUpOptions& options,
                               std::int64_t from_ns) {
   const auto device = now.recent->Holding(options.rig, options.camera_role);

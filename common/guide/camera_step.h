@@ -17,22 +17,24 @@ namespace footing::guide {
 struct MarkState {
   enum class Stage { kToCome, kNext, kTaken };
   std::string name;
-  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Of the centre of a sphere that lies on it.
+  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Centre of a sphere that lies on it.
   Stage stage = Stage::kToCome;
-  std::optional<double> residual_m = {};  ///< Of the pose, once there is one.
+  std::optional<double> residual_m = {};  ///< Residual of the pose, once there is one.
 };
 
+/// Progress of a camera's calibration, for whoever draws it.
 struct MarksState {
   std::vector<MarkState> marks;
   bool upright = false;           ///< The controller stands on the next mark, sphere up.
   std::size_t done = 0, all = 0;  ///< Places, upright ones included.
-  double rest_share = 0;          ///< Of the time for which the sphere must rest.
+  double rest_share = 0;          ///< Share of the time for which the sphere must rest.
   std::optional<Eigen::Isometry3d> X_WC = {};  ///< The pose, once there is one.
 };
 
 /// The items of a set-up, in their order.
 enum class Item { kAdapter, kPairing, kRoles, kLayout, kTare, kMounting, kWeigh, kCamera, kChecks };
 
+/// Name of an item on command lines, the item of a name, and all items in their order.
 const char* Name(Item item);
 std::optional<Item> ItemNamed(const std::string& name);
 const std::vector<Item>& AllItems();
@@ -50,7 +52,7 @@ struct SetUpOptions {
   double patience_s = 60;  ///< Timeout of an item that makes no progress.
   double settle_s = 4;     ///< Without a new device in this time, all are there.
   int tries = 2;
-  std::string camera_file;  ///< Of the camera that is calibrated; empty: none is.
+  std::string camera_file;  ///< File of the camera that is calibrated; empty: none is.
   /// Which of its spheres is held on the marks, and how large it is.
   stream::DeviceRole camera_role = stream::DeviceRole::kUnspecified;
   double camera_radius_m = 0;
@@ -72,14 +74,15 @@ struct Action {
   std::int64_t still_to_ns = 0;
   std::int64_t steps_from_ns = 0;
   std::int64_t steps_to_ns = 0;
-  Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();  ///< Of kStoreCamera.
+  Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();  ///< Pose for kStoreCamera.
   std::string remark;                                      ///< Likewise.
 };
 
+/// Answer to an action.
 struct Answer {
   std::string key;
   bool ok = false;
-  std::string message;  ///< Of a refusal, or a remark.
+  std::string message;  ///< Reason of a refusal, or a remark.
   double residual = 0;
   std::string unit;
 };
@@ -94,15 +97,15 @@ struct Situation {
   bool enter = false;                 ///< The person pressed Enter since the last instant.
 };
 
-/// What an item says in that instant.
+/// Output of an item at that instant.
 struct Progress {
   std::string prompt;   ///< To the person; the same until something else is asked.
   std::string picture;  ///< Goes with the prompt; may be empty.
   /// The same as a number, for who performs it without reading; of which device, if of one.
   stream::Gesture gesture = stream::Gesture::kUnspecified;
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
-  std::string feedback;             ///< What is seen at the moment; changes all the time.
-  std::optional<MarksState> marks;  ///< Of a camera's calibration.
+  std::string feedback;             ///< Current observation; changes all the time.
+  std::optional<MarksState> marks;  ///< Marks of a camera's calibration.
   std::vector<Action> actions;
   std::vector<stream::SetupItem> results;  ///< Without rig, date and staleness.
   bool finished = false;
@@ -123,9 +126,9 @@ class CameraStep {
   /// A stretch of a sphere at rest, or why there is none yet.
   struct Rest {
     std::optional<camera_pose::SeenPoint> seen;
-    double tilt_rad = 0;  ///< Of the controller's long axis against gravity.
+    double tilt_rad = 0;  ///< Tilt of the controller's long axis against gravity.
     std::string feedback;
-    double share = 0;  ///< Of the stretch.
+    double share = 0;  ///< Share of the stretch.
   };
 
   void Begin(const Situation& now, const SetUpOptions& options);
@@ -142,8 +145,8 @@ class CameraStep {
   bool begun_ = false, stored_ = false;
   std::vector<camera_pose::BoardMark> marks_;
   std::vector<std::size_t> places_;  ///< Indices of marks_, in the order asked for.
-  std::vector<bool> upright_;        ///< Of each place.
-  std::size_t next_ = 0;             ///< Of places_.
+  std::vector<bool> upright_;        ///< Whether each place is an upright one.
+  std::size_t next_ = 0;             ///< Index into places_.
   std::int64_t asked_ns_ = 0;        ///< When the present place was asked for.
   std::string picture_;
   camera_pose::Observations observations_;

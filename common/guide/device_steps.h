@@ -15,16 +15,18 @@ namespace footing::guide {
 struct Pick {
   enum class Kind { kNone, kOne, kAmbiguous };
   Kind kind = Kind::kNone;
-  std::uint32_t device = 0;  ///< Of kOne.
+  std::uint32_t device = 0;  ///< The device that is meant, with kOne.
   double lead = 0;           ///< How clearly: its signal over the next one's, at most 99.
-  std::string note;          ///< What was seen, for a person.
+  std::string note;          ///< Observation, for a person.
 };
 
+/// Load on one board during a stretch of time.
 struct BoardLoad {
   std::uint32_t device = 0;
   Load load;
 };
 
+/// Movement of one hand device during a stretch of time.
 struct DeviceMotion {
   std::uint32_t device = 0;
   Motion motion;
@@ -75,7 +77,7 @@ class RolesStep {
   Phase phase_ = Phase::kBegin;
   std::vector<stream::DeviceRole> wanted_;  ///< Still to be asked for, in order.
   std::set<std::string> named_;             ///< Serials that have been picked.
-  std::set<stream::DeviceRole> alone_;      ///< Of a device that is the only one of its kind.
+  std::set<stream::DeviceRole> alone_;      ///< Roles of a device that is the only one of its kind.
   std::int64_t rest_since_ns_ = 0;
   std::vector<stream::SetupItem> results_;
 };

@@ -15,7 +15,7 @@
 /// say. Everything is a plain value; the time is footingd's (host_ns of its ticks).
 namespace footing::guide {
 
-/// What stood on a board during a stretch of time.
+/// Load on a board during a stretch of time.
 struct Load {
   int samples = 0;
   double mean_n = 0;
@@ -23,16 +23,17 @@ struct Load {
   bool cop_valid = false;  ///< In every sample that counts.
   double cop_x_m = 0;      ///< Mean, plate frame P.
   double cop_y_m = 0;
-  double cop_sd_m = 0;  ///< Of both axes together.
+  double cop_sd_m = 0;  ///< Standard deviation of both axes together.
 };
 
 /// How much a hand device moved during a stretch of time.
 struct Motion {
   int samples = 0;
-  double mean_mps2 = 0;   ///< Of the specific force's magnitude.
+  double mean_mps2 = 0;   ///< Mean magnitude of the specific force.
   double shake_mps2 = 0;  ///< Root mean square distance of the specific force from its mean.
 };
 
+/// Statistics of the samples of a stretch.
 Load LoadOf(const std::vector<stream::BoardSample>& samples);
 Motion MotionOf(const std::vector<stream::MotionSample>& samples);
 
@@ -57,7 +58,7 @@ class Recent {
   /// Mean specific force, sensor frame S; nothing when the stretch is not covered.
   std::optional<Eigen::Vector3d> MeanForce(std::uint32_t device, std::int64_t from_ns,
                                            std::int64_t to_ns) const;
-  /// Of trackers, received in [from, to), seen or not.
+  /// Samples of trackers, received in [from, to), seen or not.
   std::vector<stream::HandSample> Hands(const std::string& rig, stream::DeviceRole role,
                                         std::int64_t from_ns, std::int64_t to_ns) const;
 
@@ -73,10 +74,11 @@ std::string LayoutPicture(const std::string& preset);
 
 /// Loads while the person did as asked. A board that is not there has no samples.
 struct Stance {
-  Load left;  ///< Of the board that has the role left_board.
+  Load left;  ///< Load of the board that has the role left_board.
   Load right;
 };
 
+/// Loads in the poses of the layout check.
 struct LayoutObserved {
   std::optional<Stance> left_alone;  ///< Both are needed to find swapped boards.
   std::optional<Stance> right_alone;
@@ -86,12 +88,13 @@ struct LayoutObserved {
 
 enum class LayoutFault { kNone, kNoContact, kSwapped, kLeftTurned, kRightTurned, kBothTurned };
 
+/// Result of the layout check.
 struct LayoutVerdict {
   LayoutFault fault = LayoutFault::kNone;
   bool degraded = false;
   double residual_mm = 0;  ///< Sideways movement of the COP while leaning forward: 0 is ideal.
   double rest_n = 0;       ///< Largest force on a board that should have been free.
-  std::string note;        ///< What is wrong and what to do, or the figures.
+  std::string note;        ///< Fault and remedy, or the figures.
 
   bool passed() const { return fault == LayoutFault::kNone; }
 };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStillMps2 = 0.8;     // A standing person's hands and shins stay under half.
 constexpr double kSteppingMps2 = 1.5;  // The slowest step shakes a shin or wrist more.
-constexpr std::int64_t kWindowNs = 500'000'000;        // Of the shake that Advance is given.
+constexpr std::int64_t kWindowNs = 500'000'000;        // Window of the shake that Advance is given.
 constexpr std::int64_t kStepsLeastNs = 1'000'000'000;  // Three steps take longer.
 constexpr std::int64_t kStepsMostNs = 12'000'000'000;
 constexpr std::int64_t kStandAgainNs = 700'000'000;

@@ -25,7 +25,7 @@ std::string Wearing(stream::DeviceRole role);
 
 inline constexpr double kStillForS = 2;
 
-/// What the mounted devices show of "two seconds still, then three steps": where each stretch lies.
+/// Stretches of "two seconds still, then three steps" in the samples of the mounted devices.
 /// The steps begin half a second before a movement shows, so that its very first way is among them.
 /// A plain value that is asked again and again.
 class StillThenSteps {

@@ -20,20 +20,21 @@ Digest Sha256(std::string_view bytes);
 /// In lower-case hexadecimal, as sha256sum prints it.
 std::string Hex(const Digest& digest);
 
-/// What footing-train makes and the pose engine runs: named float32 tensors with their provenance,
-/// one *.fmodel file each (docs/models.md).
+/// Models that footing-train makes and the pose engine runs: named float32 tensors with their
+/// provenance, one *.fmodel file each (docs/models.md).
 constexpr std::size_t kMostFileBytes = 4u << 20;
-constexpr std::uint32_t kVersion = 1;  ///< Of the container; a reader refuses any other.
+constexpr std::uint32_t kVersion = 1;  ///< Version of the container; a reader refuses any other.
 
 /// Row by row, last index fastest.
 struct Tensor {
   std::string name;
   std::vector<std::uint32_t> shape;
   std::vector<float> values;  ///< As many as the product of `shape`.
-  /// What the last index counts, such as degrees of freedom; none where the name says it all.
+  /// Meaning of the last index, such as degrees of freedom; none where the name says it all.
   std::vector<std::string> labels = {};
 };
 
+/// A file that a model was trained on.
 struct DataFile {
   std::string name;  ///< Without its folder.
   Digest sha256{};
@@ -48,6 +49,7 @@ struct Provenance {
   std::vector<std::string> subjects;  ///< Everyone whose motion was used, validation included.
 };
 
+/// A trained model: its tensors and where they come from.
 struct Model {
   std::string kind;  ///< "cascade", "mlp", "com", "basis", ...
   Provenance provenance;

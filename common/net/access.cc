@@ -192,7 +192,7 @@ bool IsPlain(const std::string& token) {
   return token.size() >= kShortest && token.size() <= kLongest;
 }
 
-/// What to do about a file that cannot be opened.
+/// Remedy for a file that cannot be opened.
 std::string Remedy(const std::string& path) {
   if (access(path.c_str(), R_OK) == 0) return "";
   if (errno == ENOENT) {

@@ -55,7 +55,7 @@ Result<std::map<std::string, v1::Role>> ParseClients(const std::string& text);
 /// characters without blanks.
 Result<std::string> ReadTokenFile(const std::string& path);
 
-/// Of the file that FOOTING_TOKEN_FILE names; empty when it names none. An error names the
+/// Token of the file that FOOTING_TOKEN_FILE names; empty when it names none. An error names the
 /// variable, the file and what is wrong with it.
 Result<std::string> TokenFromEnvironment();
 
@@ -84,7 +84,7 @@ class TokenGuard {
 
   std::string token_;
   std::string view_token_;
-  std::map<std::string, TokenBucket> tries_;  ///< Of hosts that were wrong lately.
+  std::map<std::string, TokenBucket> tries_;  ///< Buckets of hosts that were wrong lately.
 };
 
 }  // namespace footing::transport

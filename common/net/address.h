@@ -38,14 +38,14 @@ inline Result<Address> AddressOrDefault(const std::string& text, const std::stri
   return text.empty() ? Result<Address>(DefaultAddress(name)) : ParseAddress(text);
 }
 
-/// What a server needs before it listens where others than this host's users reach it.
-/// What an administrator gives, by the names that the program has for it.
+/// Checks of a server before it listens where others than this host's users reach it.
+/// Settings that an administrator gives, by the names that the program has for them.
 struct ListenSettings {
   std::string keys = "set token_file or clients_file";
   std::string in_clear = "--set insecure_lan=true with a token_file";
 };
 
-/// Of an address that speaks TLS: usage error when nobody has a key, neither a token nor a
+/// Checks an address that speaks TLS: usage error when nobody has a key, neither a token nor a
 /// certificate.
 Result<void> CheckKeys(const Address& address, bool has_keys, const ListenSettings& settings = {});
 
@@ -70,9 +70,10 @@ Result<void> CheckRunFolder(const std::string& folder, uid_t own_user);
 /// CheckRunFolder for an address in the fallback folder; any other address passes.
 Result<void> CheckFolderOf(const Address& address);
 
-/// What a person does when no server answers, to be put behind `why`: "; " and `otherwise`, such as
-/// how to start one. Where this user may not open the service's sockets that would not help: then
-/// it is to join their group, or nothing where `why` says so already. Empty without `otherwise`.
+/// Remedy for a person when no server answers, to be put behind `why`: "; " and `otherwise`, such
+/// as how to start one. Where this user may not open the service's sockets that would not help:
+/// then it is to join their group, or nothing where `why` says so already. Empty without
+/// `otherwise`.
 std::string RemedyFor(const std::string& why, const std::string& otherwise);
 
 }  // namespace footing::transport

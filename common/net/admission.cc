@@ -59,7 +59,8 @@ void TickQueue::DropOldest() {
   const std::uint64_t missing = oldest.tick->missing_from;
   dropped_ = Dropped{dropped_ ? dropped_->from : missing != 0 ? missing : sequence, sequence};
   ++dropped_ticks_;
-  // What the dropped one contained, then its own, then what its heir has already: the newest stays.
+  // Fields of the dropped one first, then its own, then those that its heir has already: the newest
+  // stays.
   std::vector<RetainedField> retained = std::move(oldest.retained);
   Retain(oldest.tick, retained);
   Entry& heir = entries_.front();
@@ -340,7 +341,8 @@ std::string HowToGetMore(const ServerOptions& options, Grant grant) {
                                 : ", or over TCP with the server's token (control)");
 }
 
-/// What an administrator does to let in a client whose certificate the server does not know.
+/// Refusal that says how an administrator lets in a client whose certificate the server does not
+/// know.
 NotAdmitted UnknownCertificate(const ServerOptions& options, const Caller& caller) {
   return Unproved(HowToComeIn(options, caller), Lack::kKnownCertificate,
                   "its certificate is not in the clients_file; to let it in add the line \"" +

@@ -25,7 +25,7 @@
 
 namespace footing::transport {
 
-/// What a session's full queue does; numbers as in v1::QueuePolicy.
+/// Behaviour of a session's full queue; numbers as in v1::QueuePolicy.
 enum class QueueRule { kLatest = 1, kDropOldest = 2, kReliable = 3 };
 
 /// A channel's field out of another tick than the one it goes along with.
@@ -60,7 +60,7 @@ class TickQueue {
   /// A tick that is left out on purpose: nothing is missing, but retained channels are kept.
   void Skip(const SharedTick& tick);
 
-  /// What was dropped in front of the oldest tick, once.
+  /// Ticks that were dropped in front of the oldest tick, once.
   std::optional<Dropped> TakeDropped() { return std::exchange(dropped_, std::nullopt); }
   bool Pop(Entry& entry);
 
@@ -95,19 +95,20 @@ inline constexpr std::uint32_t kProtocolMinor = 0;
 /// As a person reads it; the number of one that this version does not know.
 std::string RoleName(v1::Role role);
 
+/// A refusal with that reason, and a line for a person.
 v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message);
 
 /// A Welcome but for its stamps.
 v1::Welcome MakeWelcome(const ServerOptions& options, std::uint64_t epoch, v1::Role role);
 
-/// What a session gets, after the server's limits.
+/// Effective subscription of a session, after the server's limits.
 struct Subscription {
   std::set<std::uint32_t> fields;
   bool all = false;   ///< Every channel: the tick's bytes go out as one piece.
   double max_hz = 0;  ///< 0: every tick.
   QueueRule rule = QueueRule::kDropOldest;
   std::size_t queue_ticks = 1;
-  std::size_t max_channel_bytes = 0;  ///< Of one tick, with what it carries along.
+  std::size_t max_channel_bytes = 0;  ///< Bytes of one tick, with what it carries along.
 };
 
 /// The effective subscription and the answer that says so (but for first_sequence).
@@ -121,7 +122,7 @@ EffectiveSubscription Settle(const v1::Subscribe& wish, const ServerOptions& opt
 struct ServerPosition {
   std::string name;
   std::uint64_t epoch = 0;
-  /// Of the last tick, which may be of an epoch before: the connection may break between.
+  /// Last tick, which may be of an epoch before: the connection may break between.
   std::uint64_t last_epoch = 0;
   std::uint64_t last_sequence = 0;
 
@@ -132,8 +133,8 @@ struct ServerPosition {
   }
 };
 
-/// What one gather-write sends: small pieces of its own beside bytes that many sessions share.
-/// It keeps all of them alive until they are written.
+/// Content of one gather-write: small pieces of its own beside bytes that many sessions share. It
+/// keeps all of them alive until they are written.
 class WriteBatch {
  public:
   /// As many buffers as one writev(2) of Asio takes.
@@ -211,6 +212,7 @@ enum class Grant { kAddress, kUser, kCertificate, kToken, kViewToken };
 /// "address" (loopback TCP), "user" (the kernel knows it), "certificate", "token", "view_token".
 std::string Name(Grant grant);
 
+/// A client that was let in: its role, and the reason for it.
 struct Admitted {
   v1::Role role = v1::ROLE_VIEW;
   v1::Role highest = v1::ROLE_VIEW;  ///< That it could have asked for.
@@ -224,6 +226,7 @@ struct Admitted {
 /// Which proof of who it is a caller lacked, for the log.
 enum class Lack { kNone, kAnyProof, kKnownCertificate, kRightToken };
 
+/// A client that was turned away: the answer to it, and what it lacks.
 struct NotAdmitted {
   v1::Refused answer;
   Lack lack = Lack::kNone;
@@ -231,7 +234,7 @@ struct NotAdmitted {
   bool waits = false;          ///< A guess of a token: it is answered later.
 };
 
-/// What Hello messages change. A plain value.
+/// State that Hello messages change. A plain value.
 struct AdmissionState {
   TokenGuard token;
   PlacesTaken places = {};

@@ -155,7 +155,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
       case v1::Envelope::kGoodbye:
         close_.text = message.goodbye().reason();
         return;
-      default:  // Of a later minor version.
+      default:  // Message of a later minor version.
         return;
     }
   }

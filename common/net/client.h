@@ -21,6 +21,7 @@
 
 namespace footing::transport {
 
+/// Address, identity and subscription of a client.
 struct ClientOptions {
   Address address;
   std::string client_name;
@@ -57,6 +58,7 @@ struct ClockOffset {
   std::int64_t uncertainty_ns = 0;  ///< Half the round trip: the truth is within.
 };
 
+/// Calls that a client makes for each message and change of its link.
 struct ClientHandlers {
   std::function<void(const v1::Welcome&)> on_welcome;
   std::function<void(const v1::Tick&)> on_tick;
@@ -98,10 +100,9 @@ class Client {
   std::shared_ptr<Implementation> implementation_;
 };
 
-/// What a client says to its server, as functions of what it knows.
-/// Over TCP with the token of the environment where the options have none; an error when its file
-/// cannot be used. Beyond this host a token goes over tcp:, where everybody on the way can read it,
-/// only with FOOTING_INSECURE_LAN=1; an error otherwise.
+/// First message of a client. Over TCP it has the token of the environment where the options have
+/// none; an error when its file cannot be used. Beyond this host a token goes over tcp:, where
+/// everybody on the way can read it, only with FOOTING_INSECURE_LAN=1; an error otherwise.
 Result<v1::Envelope> MakeHello(const ClientOptions& options);
 
 /// Asks for the ticks behind `last_sequence` of `last_epoch`, or, when that is 0, for those that
@@ -109,12 +110,13 @@ Result<v1::Envelope> MakeHello(const ClientOptions& options);
 v1::Envelope MakeSubscribe(const ClientOptions& options, std::uint64_t epoch,
                            std::uint64_t last_epoch, std::uint64_t last_sequence);
 
+/// Asks for ticks that are missing, both ends included.
 v1::Envelope MakeRefill(std::uint64_t from_sequence, std::uint64_t to_sequence);
 v1::Envelope MakePing(std::uint64_t id, std::int64_t now_ns);
 v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_t now_ns);
 
-/// What a client that finds nobody says: the dial's error, and the reason that the server gave when
-/// it ended the last connection, if it did.
+/// Text of a client that finds no server: the dial's error, and the reason that the server gave
+/// when it ended the last connection, if it did.
 std::string WaitingText(const std::string& dial_error, const std::string& last_reason);
 
 /// The commands of a client that wait for their answers. Each gets exactly one call of `done`.
@@ -143,7 +145,7 @@ class PendingCommands {
   std::map<std::uint64_t, Waiting> waiting_;
 };
 
-/// Of a command that states none.
+/// Deadline of a command that states none.
 inline constexpr std::uint32_t kDefaultDeadlineMs = 1000;
 
 /// The answers to a session's last commands, so that a repeated id gets its first answer again.
@@ -196,9 +198,9 @@ class ServerTrust {
 /// The name of a server in the file of known servers: "HOST:PORT".
 std::string KnownName(const Address& address);
 
-/// What clients connect with: the user's own certificate where there is one, which
-/// `footing-ctl trust --client` makes (see tls::ClientIdentityFile). Made once for all of a loop,
-/// since that takes as long as a handshake's computations.
+/// TLS context of clients: the user's own certificate where there is one, which `footing-ctl trust
+/// --client` makes (see tls::ClientIdentityFile). Made once for all of a loop, since that takes as
+/// long as a handshake's computations.
 Result<tls::Context> ClientContext(boost::asio::io_context& io);
 
 /// How long to wait between tries: doubled each time, from `min_s` to `max_s`, times a random

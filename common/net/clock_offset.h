@@ -16,6 +16,7 @@ struct Probe {
   std::int64_t t3_ns = 0;
 };
 
+/// Estimated offset between two clocks, ns.
 struct OffsetEstimate {
   bool valid = false;
   std::int64_t offset_ns = 0;       ///< The answerer's clock minus the asker's.

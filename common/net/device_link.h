@@ -15,6 +15,7 @@
 /// A client's side of footingd's device socket (docs/protocol.md).
 namespace footing::device_link {
 
+/// Address of footingd, and the calls that a link makes.
 struct Options {
   transport::Address to;
   std::size_t max_queued_frames = 1024;  ///< Messages that wait while footingd does not read.

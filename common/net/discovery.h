@@ -23,13 +23,13 @@ inline constexpr const char* kServiceType = "_footing._tcp";
 inline constexpr const char* kAvahi = "org.freedesktop.Avahi";
 inline constexpr int kAnyInterface = -1, kAnyProtocol = -1, kIpv4 = 0;
 
-/// What a server says of one of its ports.
+/// Announcement of one of a server's ports.
 struct Service {
-  std::string name;     ///< Of the server, unique in the network: at most 63 bytes.
+  std::string name;     ///< Name of the server, unique in the network: at most 63 bytes.
   std::string program;  ///< "footingd" or "footing-sim".
   std::uint16_t port = 0;
   bool tls = false;
-  std::string fingerprint;  ///< Of its certificate: a hint to compare, no proof.
+  std::string fingerprint;  ///< Fingerprint of its certificate: a hint to compare, no proof.
 };
 
 /// The TXT record: "program=...", "tls=1" and "fingerprint=sha256:...".

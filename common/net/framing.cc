@@ -324,7 +324,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   FramedHandlers handlers_;
   FrameSplitter splitter_;
   InputPace pace_;
-  std::string_view unhandled_;  ///< Of input_: read, and not handled yet.
+  std::string_view unhandled_;  ///< Part of input_ that is read, and not handled yet.
   Outbox outbox_;
   const SharedLoop loop_;
   std::unique_ptr<WriteBatch> batch_;  ///< While something waits to be written.

@@ -25,6 +25,7 @@ namespace footing::transport {
 
 inline constexpr std::size_t kLengthBytes = 4;
 
+/// Length of a frame to the bytes in front of it, and back.
 std::array<char, kLengthBytes> EncodeLength(std::uint32_t length);
 std::uint32_t DecodeLength(const char* bytes);
 
@@ -94,16 +95,18 @@ class MessageParser {
   bool parsed_ = false;
 };
 
+/// Limits of one connection, bytes and frames.
 struct FramedLimits {
   std::uint32_t max_in_bytes = 64u << 10;  ///< A longer announced frame ends the connection.
   std::uint32_t max_out_bytes = 1u << 20;
-  std::size_t max_queued_bytes = 1u << 20;  ///< Of Send(); what waits in the kernel not counted.
+  std::size_t max_queued_bytes = 1u << 20;  ///< Limit for Send(), without the kernel's buffer.
   std::size_t max_queued_frames = 1024;
   double linger_s = 1;  ///< How long Finish() waits for the other side to take the last bytes.
   /// Who sends more is read no more until it has waited: nothing of it is lost, it is slowed.
   InputBudget input = {};
 };
 
+/// Calls that a connection makes.
 struct FramedHandlers {
   /// One frame's payload, valid during the call.
   std::function<void(std::string_view payload)> on_frame;
@@ -162,7 +165,7 @@ class FramedConnection {
   std::size_t queued_bytes() const;
   /// Within TLS.
   bool secured() const;
-  /// Of the certificate that the other side showed in TLS; empty without one.
+  /// Fingerprint of the certificate that the other side showed in TLS; empty without one.
   std::string peer_fingerprint() const;
   /// For SO_PEERCRED and the like.
   int native_handle();
@@ -192,7 +195,7 @@ class Outbox {
 
   bool empty() const { return frames_.empty(); }
   std::size_t frames() const { return frames_.size(); }
-  /// Of their payloads.
+  /// Bytes of their payloads.
   std::size_t bytes() const { return bytes_; }
 
  private:

@@ -27,7 +27,7 @@ bool EndsWithinLine(int file) {
 
 Result<std::optional<std::string>> KnownServers::Find(const std::string& server) const {
   if (access(path_.c_str(), F_OK) != 0 && errno == ENOENT) return std::optional<std::string>();
-  // What could not be read may have had the server: it must not be taken for a new one.
+  // A file that cannot be read may have had the server: it must not be taken for a new one.
   const auto all = config::ReadTextFile(path_);
   if (!all) return all.error();
   std::istringstream file(*all);

@@ -48,7 +48,7 @@ class Lease {
 
   /// Empty: nobody has the lease.
   const std::string& holder() const { return holder_; }
-  /// What happened to the lease since the last call, for a person; renewals are left out.
+  /// Changes of the lease since the last call, for a person; renewals are left out.
   std::vector<std::string> TakeChanges();
 
  private:

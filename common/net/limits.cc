@@ -63,12 +63,12 @@ constexpr double kMostSessions = 8000;  // Each is a file descriptor; the units 
 
 bool IsOrdinary(v1::Role role) { return role < v1::ROLE_CONTROL; }
 
-/// Of so many places, those that sessions without the role control leave free.
+/// Number of `places` that sessions without the role control leave free.
 std::int64_t KeptForControl(const SessionLimits& limits, std::int64_t places) {
   return std::min(limits.control_places, places / 4);
 }
 
-/// Of one host or certificate: the others have the rest.
+/// Most places with the role control of one host or certificate: the others have the rest.
 std::int64_t MostControlOfOne(const SessionLimits& limits) {
   return (limits.max_control_sessions + 1) / 2;
 }
@@ -110,7 +110,7 @@ void SessionLimits::Bind(config::Binder& binder) {
 }
 
 InputBudget SessionLimits::Input() const {
-  constexpr double kBurstS = 0.25;  // Of bytes: the longest message fits in four times.
+  constexpr double kBurstS = 0.25;  // Burst of bytes: the longest message fits in four times.
   const double bytes_per_s = session_kilobytes_per_s * 1024;
   return {session_messages_per_s, session_messages_per_s, bytes_per_s, kBurstS * bytes_per_s};
 }

@@ -57,7 +57,7 @@ class TokenBucket {
   std::int64_t filled_ns_ = 0;
 };
 
-/// What the other side of a connection may send; rates of 0 do not limit.
+/// Input limits for the other side of a connection; rates of 0 do not limit.
 struct InputBudget {
   double messages_per_s = 0;
   double message_burst = 0;  ///< At once, after a pause.
@@ -65,7 +65,7 @@ struct InputBudget {
   double byte_burst = 0;
 };
 
-/// What a connection has taken of its budget. A plain value.
+/// Share of its budget that a connection has used. A plain value.
 class InputPace {
  public:
   explicit InputPace(const InputBudget& budget)
@@ -114,7 +114,8 @@ v1::Role HighestRole(const Peer& peer, uid_t own_user, gid_t own_group);
 /// (PlacesTaken).
 struct SessionLimits {
   std::int64_t max_sessions = 256;
-  /// Of one user; all sessions over TCP count as one user's, since nobody knows whose they are.
+  /// Sessions of one user; all sessions over TCP count as one user's, since nobody knows whose they
+  /// are.
   std::int64_t max_sessions_per_user = 224;
   /// Over TLS, of one host, before they are welcomed: who has no token cannot take all places.
   std::int64_t max_entering_per_host = 64;
@@ -123,12 +124,12 @@ struct SessionLimits {
   std::int64_t max_sessions_per_host = 64;
   std::int64_t max_sessions_per_certificate = 16;  ///< The same for one client certificate.
   std::int64_t admin_places = 16;
-  /// Of max_sessions, and of the places over TCP and TLS, those that sessions with the roles view
-  /// and log leave free; at most a quarter of either.
+  /// Places, of max_sessions and of those over TCP and TLS, that sessions with the roles view and
+  /// log leave free; at most a quarter of either.
   std::int64_t control_places = 16;
   std::int64_t max_log_sessions = 64;      ///< With the role log, administrators not counted.
   std::int64_t max_control_sessions = 32;  ///< With the role control, likewise.
-  /// What one session may send, on the average and at once after a pause; a Subscribe counts as 20,
+  /// Input of one session, on the average and at once after a pause; a Subscribe counts as 20,
   /// a Command as 2. A session that sends more is slowed and informed.
   double session_messages_per_s = 100;
   double session_kilobytes_per_s = 1024;
@@ -140,7 +141,7 @@ struct SessionLimits {
 /// The connections that there are when another one comes, those being refused not counted.
 struct SessionCounts {
   std::int64_t all = 0;
-  std::int64_t of_user = 0;  ///< Of the user that comes now.
+  std::int64_t of_user = 0;  ///< Connections of the user that comes now.
   /// Over TLS from the host that comes now, and not welcomed yet.
   std::int64_t entering_of_host = 0;
 };
@@ -150,7 +151,7 @@ struct SessionCounts {
 std::string WhyNoPlace(const SessionLimits& limits, const Peer& peer, uid_t own_user,
                        const SessionCounts& taken);
 
-/// What a session that has said who it is counts for.
+/// Identity under which a session is counted, once it has said who it is.
 struct Claim {
   v1::Role role = v1::ROLE_VIEW;
   bool remote = false;           ///< Over TCP or TLS.

@@ -11,7 +11,7 @@
 
 namespace footing::transport {
 
-/// What a listener may do beyond this host.
+/// Permissions of a listener beyond this host.
 struct ListenSecurity {
   /// Asked when it is to listen on tls:, or on a socket of TCP that was passed. Empty: it never
   /// does.

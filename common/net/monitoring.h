@@ -17,7 +17,7 @@
 
 namespace footing::monitoring {
 
-/// What this process takes of the host.
+/// Usage of the host by this process.
 struct ProcessUsage {
   double cpu_s = 0;  ///< User and system.
   std::uint64_t resident_bytes = 0;
@@ -46,7 +46,7 @@ struct TickInstant {
   std::int64_t now_ns = 0;
   /// When it was due; none: one period after the tick before it.
   std::optional<std::int64_t> due_ns;
-  /// Of the server's own count; none: the ticks more than a period late are counted here.
+  /// Overruns by the server's own count; none: the ticks more than a period late are counted here.
   std::optional<std::uint64_t> overruns;
 };
 
@@ -112,6 +112,7 @@ class Monitor {
   std::unique_ptr<MetricsEndpoint> endpoint_;
 };
 
+/// A label of a metric's sample.
 struct Label {
   const char* name;
   std::string value;
@@ -127,7 +128,7 @@ class MetricsWriter {
   void Gauge(const char* name, const char* help) { Begin(name, help, "gauge"); }
   void Counter(const char* name, const char* help) { Begin(name, help, "counter"); }
 
-  /// What is not finite is written as 0.
+  /// A value that is not finite is written as 0.
   void Sample(double value, const std::string& labels = "");
   void Sample(std::uint64_t value, const std::string& labels = "");
 

@@ -45,6 +45,7 @@ struct AccessKeys {
   bool has_keys() const { return has_token() || !clients.empty(); }
 };
 
+/// Identity, channels and limits of a server.
 struct ServerOptions : AccessKeys {
   std::string server_id;  ///< "footingd" or "footing-sim".
   std::string version;
@@ -55,7 +56,7 @@ struct ServerOptions : AccessKeys {
   std::uint32_t max_message_in_bytes = 64u << 10;
   std::uint32_t max_message_out_bytes = 1u << 20;
   std::uint32_t max_queue_ticks = 1024;
-  std::uint64_t epoch = 0;  ///< Of the source, for a relay; 0: a random one.
+  std::uint64_t epoch = 0;  ///< Epoch of the source, for a relay; 0: a random one.
   SessionLimits sessions;
   /// Key and certificate for TLS, made where the file is missing when it first listens on tls:;
   /// none: there is no TLS.
@@ -92,6 +93,7 @@ struct OverloadLine {
   std::string channel = {};
 };
 
+/// Calls that a server makes to the program that it is part of.
 struct ServerHandlers {
   /// A command of a session with role control or admin. Roles below, and texts and numbers that no
   /// command may have (CheckContent), are refused before this is called. Without a result the
@@ -105,12 +107,13 @@ struct ServerHandlers {
   std::function<void(const OverloadLine&)> on_overload = {};
 };
 
+/// Counts of a server since its start, and its present sessions.
 struct ServerStatistics {
   std::size_t sessions = 0;
   std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
   std::uint64_t denied = 0;             ///< Without a right token or a known certificate.
-  std::uint64_t ticks_dropped = 0;      ///< Of full session queues, all sessions together.
+  std::uint64_t ticks_dropped = 0;      ///< Ticks of full session queues, all sessions together.
   std::uint64_t channels_left_out = 0;  ///< Did not fit into a tick, or are not a channel.
   std::uint64_t ring_bytes = 0;
   std::uint64_t slowed = 0;      ///< Times that a session had to wait for its budget.
@@ -155,12 +158,12 @@ class Server {
   /// two at most once in 10 s.
   void NoteLateTicks(std::uint64_t count);
 
-  /// Of the certificate that it shows on tls:; empty while it listens on none.
+  /// Fingerprint of the certificate that it shows on tls:; empty while it listens on none.
   std::string fingerprint() const;
 
   std::uint64_t epoch() const;
   ServerStatistics statistics() const;
-  /// Of each session that was welcomed.
+  /// Statistics of each session that was welcomed.
   std::vector<stream::SessionStats> sessions() const;
 
   /// Says goodbye to every session and closes; what waits for them is lost.
@@ -181,13 +184,13 @@ class Server {
   std::shared_ptr<Implementation> implementation_;
 };
 
-/// What has been published: the ring of the last ticks and the last value of every retained
-/// channel. All sessions read it.
+/// Published ticks: the ring of the last ones and the last value of every retained channel. All
+/// sessions read it.
 class Publication {
  public:
   explicit Publication(const ServerOptions& options);
 
-  /// Of the heads of ticks from now on.
+  /// Epoch in the heads of ticks from now on.
   void set_epoch(std::uint64_t epoch) { epoch_ = epoch; }
 
   /// Serialises a tick once. Channels that would make it longer than max_message_out_bytes are left
@@ -222,7 +225,7 @@ class Publication {
 
   std::vector<std::uint32_t> fields_;  ///< Side by side: a tick finds a tree's nodes cold.
   std::set<std::uint32_t> retained_;
-  std::vector<const ChannelBytes*> fitting_;  ///< Of the tick being made.
+  std::vector<const ChannelBytes*> fitting_;  ///< Channels of the tick being made.
   std::size_t max_tick_bytes_;
   TickRing ring_;
   std::map<std::uint32_t, SharedTick> last_values_;

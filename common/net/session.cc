@@ -238,7 +238,7 @@ void Session::Dispatch(const v1::Envelope& message, std::int64_t arrived_ns) {
     case v1::Envelope::kCommand:
       return OnCommand(message.command(), arrived_ns);
     case v1::Envelope::BODY_NOT_SET:
-      return;  // Of a later minor version.
+      return;  // Message of a later minor version.
     case v1::Envelope::kHello:
       return BadMessage("Hello came twice");
     case v1::Envelope::kGoodbye:
@@ -582,7 +582,8 @@ void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reaso
   batch.AddOwned(Frame(message.SerializeAsString()));
 }
 
-/// Of the hole in front of a tick, what is not before `from`: the rest is known already.
+/// Adds the part of the hole in front of a tick that is not before `from`: the rest is known
+/// already.
 void Session::AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch) {
   from = std::max(from, tick.missing_from);
   if (tick.missing_from == 0 || from >= tick.sequence) return;
@@ -886,7 +887,7 @@ class Value {
   int index_;
 };
 
-/// What is wrong with the first field that is; empty: nothing. `within` names what `message` is.
+/// Problem of the first field that has one; empty: none. `within` names what `message` is.
 std::string Problem(const Message& message, const std::string& within) {
   std::vector<const FieldDescriptor*> fields;
   message.GetReflection()->ListFields(message, &fields);

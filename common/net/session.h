@@ -43,7 +43,7 @@ class Decimator {
   std::int64_t last_ns_ = INT64_MIN;
 };
 
-/// What a session counts and measures of itself. A plain value.
+/// Counts and measurements of a session about itself. A plain value.
 struct SessionRecord {
   /// The server's own ping, once a second: it shows that the client lives, and its clock.
   struct OwnPing {
@@ -56,10 +56,10 @@ struct SessionRecord {
   std::uint64_t slowed = 0;          ///< Times that it had to wait for its budget.
   std::int64_t slowed_until_ns = 0;  ///< The end of the last of these times; 0: it never had to.
   std::uint64_t ticks_sent = 0;      ///< Handed to the socket.
-  std::uint64_t ticks_dropped = 0;   ///< Of queues of earlier subscriptions.
+  std::uint64_t ticks_dropped = 0;   ///< Ticks of queues of earlier subscriptions.
   std::string drain_reason;          ///< The reason for which it is drained; empty: it is not.
   OwnPing ping;
-  ClockOffsetEstimator clock;  ///< Of the client's clock.
+  ClockOffsetEstimator clock;  ///< Offset of the client's clock.
 
   /// The answer to `ping`; any other one says only that the client lives. Stamps without sense, as
   /// those of a client that sends none, are ignored.
@@ -69,7 +69,7 @@ struct SessionRecord {
 inline constexpr TurnPace kReplayPace = {
     .share = 0.2, .longest_rest_ns = 10'000'000, .rests_when_empty = true};
 
-/// What all sessions of one server share.
+/// State that all sessions of one server share.
 struct Shared {
   Shared(const boost::asio::any_io_executor& executor, ServerOptions with, ServerHandlers and_with)
       : options(std::move(with)),
@@ -86,7 +86,7 @@ struct Shared {
   ServerStatistics statistics;
   std::uint64_t epoch = 0;
   SharedLoop loop;
-  /// What goes out of the ring, to all sessions together: a fifth of the loop's time.
+  /// Queue of what goes out of the ring, to all sessions together: a fifth of the loop's time.
   std::shared_ptr<TurnQueue> replays;
   std::int64_t NowNs() const;
   /// Logs the line, unless another was logged within the last 10 s.
@@ -164,7 +164,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::uint64_t next = 0;
     std::uint64_t last = 0;
   };
-  /// What is to come out of the ring, a few ticks whenever it is this session's turn.
+  /// Ticks that are to come out of the ring, a few whenever it is this session's turn.
   struct Replay {
     /// While not 0 live ticks come out of the ring, from this sequence on, until it is caught up.
     std::uint64_t catch_up = 0;
@@ -222,7 +222,7 @@ class Session : public std::enable_shared_from_this<Session> {
   FramedConnection connection_;
   timer::Timer timer_;
   std::int64_t heard_ns_ = 0;
-  const double messages_per_s_;  ///< What it may send: its own, when a reload changes the limit.
+  const double messages_per_s_;  ///< Its own input rate: a reload may change the limit.
   SessionRecord record_;
   TokenBucket slowed_notices_{1, 1};
   Answers answers_;
@@ -276,8 +276,8 @@ class SessionTable {
 /// the 257th connection would be stopped for 6 to 17 ms.
 void ReserveDescriptors(std::size_t count);
 
-/// What holds for every command: its texts are printable (text::IsPrintable), since they go to
-/// screens, logs and files, and its numbers are finite. A usage error names the field. A mapping
+/// Checks what holds for every command: its texts are printable (text::IsPrintable), since they go
+/// to screens, logs and files, and its numbers are finite. A usage error names the field. A mapping
 /// table (SetInterface.table) is a document: its reader checks it.
 Result<void> CheckContent(const v1::Command& command);
 

@@ -44,7 +44,7 @@ class Socket {
   PlainSocket& plain() { return plain_; }
 
   bool secured() const { return tls_ != nullptr; }
-  /// Of the certificate that the other side showed; empty without one.
+  /// Fingerprint of the certificate that the other side showed; empty without one.
   std::string peer_fingerprint() const { return tls_ ? tls_->peer_fingerprint() : ""; }
 
   bool needs_handshake() const { return tls_ && !tls_->ready(); }

@@ -47,7 +47,7 @@ std::size_t FieldBytes(std::uint32_t field, std::size_t message_bytes);
 /// Appends one length-delimited protobuf field.
 void AppendField(std::uint32_t field, const std::string& message, Tick& tick);
 
-/// What stands in front of the channels' fields.
+/// Head of a tick, in front of the channels' fields.
 struct TickHead {
   std::uint64_t epoch = 0;
   std::uint64_t sequence = 0;
@@ -93,7 +93,7 @@ class TickRing {
   std::size_t CountFrom(std::uint64_t sequence) const;
 
   bool empty() const { return ticks_.empty(); }
-  /// Of the oldest and the newest tick held; 0 when there is none.
+  /// Sequences of the oldest and the newest tick held; 0 when there is none.
   std::uint64_t first() const { return empty() ? 0 : ticks_.front()->sequence; }
   std::uint64_t last() const { return empty() ? 0 : ticks_.back()->sequence; }
   std::size_t bytes() const { return bytes_; }

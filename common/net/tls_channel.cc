@@ -117,7 +117,7 @@ Progress Channel::Distrust(const std::string& why) {
   return Progress::kFailed;
 }
 
-/// What a server looks at before it makes anything of OpenSSL's.
+/// Checks the first bytes as a server, before it makes anything of OpenSSL's.
 std::optional<Progress> Channel::LookAtFirstBytes() {
   while (is_server_) {
     switch (first_.Check()) {

@@ -90,7 +90,8 @@ class Channel {
   const std::string& problem() const { return problem_; }
   /// The certificate of the other side was refused: trying again does not help.
   bool untrusted() const { return untrusted_; }
-  /// Of the certificate that the other side showed, and proved to own; empty when it showed none.
+  /// Fingerprint of the certificate that the other side showed, and proved to own; empty when it
+  /// showed none.
   const std::string& peer_fingerprint() const { return peer_fingerprint_; }
   std::string_view first_bytes() const { return first_.bytes(); }
 

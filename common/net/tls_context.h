@@ -48,8 +48,8 @@ namespace footing::tls {
 /// nothing.
 using CertificateCheck = std::function<std::string(const std::string& fingerprint)>;
 
-/// What all TLS connections of a server, or of a client, share. TLS 1.3 and nothing older; no
-/// tickets, no resumption, no early data.
+/// TLS settings that all connections of a server, or of a client, share. TLS 1.3 and nothing older;
+/// no tickets, no resumption, no early data.
 class Context {
  public:
   /// Clients may show a certificate. Whether it is a known one the session decides.

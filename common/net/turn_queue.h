@@ -58,8 +58,8 @@ class TurnQueue : public std::enable_shared_from_this<TurnQueue> {
   std::weak_ptr<Line> waiting_;  ///< Held by what the loop will call next, or is in now.
 };
 
-/// What the connections of one thread share: empty batches, and the line in which each gets a small
-/// piece of its work done. Without the line a connection does its work as it comes.
+/// Resources that the connections of one thread share: empty batches, and the line in which each
+/// gets a small piece of its work done. Without the line a connection does its work as it comes.
 struct SharedLoop {
   std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>();
   std::shared_ptr<TurnQueue> turns;

@@ -27,7 +27,7 @@ struct Channel {
   std::string units;
 };
 
-/// What one tracking system measured: a device, or the simulation.
+/// Measurements of one tracking system: a device, or the simulation.
 struct MotionTable {
   std::string tracksys;      ///< Letters and digits.
   std::string manufacturer;  ///< Kind of the device; "Footing" for the simulation.
@@ -54,6 +54,7 @@ struct Event {
 /// Text of a table: cells that are empty become "n/a", tabs and line ends blanks.
 std::string Tsv(const std::vector<std::vector<std::string>>& rows);
 
+/// Contents of channels.tsv: name, type, tracked point and units of every channel.
 std::string ChannelsTsv(const MotionTable& table);
 /// Without a header, as the standard asks.
 std::string MotionTsv(const MotionTable& table);
@@ -112,7 +113,7 @@ class DeviceTables {
   /// `with_role` leaves out devices that have no role.
   explicit DeviceTables(bool with_role) : with_role_(with_role) {}
 
-  /// What comes from now on is of this start of a server, which gives devices its own numbers.
+  /// From now on all data are of this start of a server, which gives devices its own numbers.
   /// Samples of before the run are left out.
   void Start(const RunClock& clock);
   void Add(const v1::Tick& tick);

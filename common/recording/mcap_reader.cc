@@ -13,7 +13,7 @@ namespace {
 struct RawRecord {
   std::uint8_t opcode = 0;
   std::string_view body;
-  std::uint64_t offset = 0;  ///< Of its head, in the file.
+  std::uint64_t offset = 0;  ///< Place of its head, in the file.
 };
 
 /// The state of one walk.
@@ -50,8 +50,8 @@ class Walker {
   }
 
  private:
-  /// Of a salvage whose next record cannot be one: where the next whole chunk begins. Behind a
-  /// damaged chunk it may begin before the end that the chunk claims.
+  /// Start of the next whole chunk, for a salvage whose next record is damaged. Behind a damaged
+  /// chunk it may begin before the end that the chunk claims.
   std::optional<std::uint64_t> WayOn(std::uint64_t offset) {
     if (mode_ != WalkMode::kSalvage) return std::nullopt;
     const std::optional<std::uint64_t> suspect = std::exchange(suspect_, std::nullopt);
@@ -461,7 +461,7 @@ struct Budget {
   }
 };
 
-/// Of one chunk, and of one of its channels, in an index that stands in a file.
+/// Bytes that one chunk, channel or metadata entry takes of the budget for an index in a file.
 constexpr std::uint64_t kChunkEntryBytes = 64, kChannelEntryBytes = 10, kMetadataEntryBytes = 32;
 
 /// Keeps the first record of an id; false when it is damaged or the budget is exceeded.

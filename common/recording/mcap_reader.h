@@ -25,6 +25,7 @@ struct Visitor {
   std::function<void()> damage;  ///< Something is left out here, by its CRC or its form.
 };
 
+/// Behaviour of a walk at damage.
 enum class WalkMode {
   kStrict,   ///< Ends at the first thing wrong.
   kSalvage,  ///< Leaves out what is damaged and takes every complete record of a cut file.
@@ -85,7 +86,7 @@ Result<void> VisitChannel(std::string_view file, const ChunkIndex& index, std::u
 
 /// The index of a file that has none.
 struct RebuiltIndex {
-  Summary summary;               ///< Of `chunks`, each with its channels; their offsets are 0.
+  Summary summary;  ///< Index of `chunks`, each with its channels; their offsets are 0.
   std::uint64_t end_offset = 0;  ///< Behind the last complete record.
   std::string problem;           ///< Why the file ends there, or what was left out; empty: nothing.
 };

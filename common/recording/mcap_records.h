@@ -26,6 +26,7 @@ constexpr bool BeginsAsMcap(std::string_view file) {
 /// Opcode (u8) and length (u64) before every record's body.
 inline constexpr std::size_t kRecordHeadBytes = 9;
 
+/// Kind of a record, the first byte of its head.
 enum class Opcode : std::uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,
@@ -46,11 +47,13 @@ enum class Opcode : std::uint8_t {
 
 using TextMap = std::map<std::string, std::string>;
 
+/// First record of a file.
 struct Header {
   std::string profile;
   std::string library;  ///< Name and version of the writer.
 };
 
+/// Definition of a message type.
 struct Schema {
   std::uint16_t id = 0;  ///< From 1.
   std::string name;      ///< Full name of the message, e.g. "footing.v1.MotionSamples".
@@ -59,6 +62,7 @@ struct Schema {
   bool operator==(const Schema&) const = default;
 };
 
+/// A stream of messages of one type under one topic.
 struct Channel {
   std::uint16_t id = 0;
   std::uint16_t schema_id = 0;
@@ -68,6 +72,7 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
+/// One message of a channel.
 struct Message {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
@@ -76,6 +81,7 @@ struct Message {
   std::string_view data;  ///< Borrowed.
 };
 
+/// A file within the file.
 struct Attachment {
   std::uint64_t log_time_ns = 0;
   std::uint64_t create_time_ns = 0;
@@ -84,11 +90,13 @@ struct Attachment {
   std::string_view data;  ///< Borrowed.
 };
 
+/// Named texts.
 struct Metadata {
   std::string name;
   TextMap values;
 };
 
+/// Messages, schemas and channels that are packed together.
 struct Chunk {
   std::uint64_t start_time_ns = 0;
   std::uint64_t end_time_ns = 0;
@@ -108,6 +116,7 @@ struct MessageIndex {
   std::vector<Entry> entries;
 };
 
+/// Place and times of a chunk, in the summary.
 struct ChunkIndex {
   std::uint64_t start_time_ns = 0;
   std::uint64_t end_time_ns = 0;
@@ -120,6 +129,7 @@ struct ChunkIndex {
   std::uint64_t uncompressed_size = 0;
 };
 
+/// Place of an attachment, in the summary.
 struct AttachmentIndex {
   std::uint64_t offset = 0;
   std::uint64_t length = 0;
@@ -130,12 +140,14 @@ struct AttachmentIndex {
   std::string media_type;
 };
 
+/// Place of a metadata record, in the summary.
 struct MetadataIndex {
   std::uint64_t offset = 0;
   std::uint64_t length = 0;
   std::string name;
 };
 
+/// Counts and times of the whole file, in the summary.
 struct Statistics {
   std::uint64_t message_count = 0;
   std::uint16_t schema_count = 0;
@@ -155,6 +167,7 @@ struct SummaryOffset {
   std::uint64_t group_length = 0;
 };
 
+/// Last record of a file: the place of the summary.
 struct Footer {
   std::uint64_t summary_start = 0;         ///< 0: there is no summary.
   std::uint64_t summary_offset_start = 0;  ///< 0: there are no summary offsets.
@@ -209,6 +222,7 @@ class Cursor {
   bool ok_ = true;
 };
 
+/// Record bytes, without the head, to values; nothing when they are damaged.
 std::optional<Header> DecodeHeader(std::string_view body);
 std::optional<Schema> DecodeSchema(std::string_view body);
 std::optional<Channel> DecodeChannel(std::string_view body);
@@ -228,11 +242,10 @@ std::optional<Footer> DecodeFooter(std::string_view body);
 /// CRC-32 (IEEE 802.3, as zlib's) of the bytes so far and `bytes` behind them; start with 0.
 std::uint32_t Crc32(std::uint32_t so_far, std::string_view bytes);
 
-/// What is wrong with a chunk as it was decoded; empty when its records can be read.
+/// Problem of a chunk as it was decoded; empty when its records can be read.
 std::string ProblemOf(const std::optional<Chunk>& chunk);
 
-/// What is wrong with a record at the end of a file: the record itself, or what it says of the
-/// file.
+/// Problem of a record at the end of a file: of the record itself, or what it says of the file.
 struct Closing {
   std::string damage;
   std::string problem;
@@ -243,6 +256,7 @@ Closing CheckDataEnd(std::string_view file, std::string_view body, std::uint64_t
 Closing CheckFooter(std::string_view file, std::string_view body, std::uint64_t offset,
                     bool data_ended);
 
+/// A record found in the bytes of a file.
 struct FoundRecord {
   Opcode opcode{};
   std::string_view body;  ///< Borrowed.

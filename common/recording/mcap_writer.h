@@ -12,7 +12,7 @@ namespace footing::mcap {
 /// second, and a reader that seeks unpacks at most 768 KiB.
 struct WriterOptions {
   std::uint64_t chunk_bytes = 768 * 1024;
-  std::uint64_t chunk_span_ns = 1'000'000'000;  ///< Of log time.
+  std::uint64_t chunk_span_ns = 1'000'000'000;  ///< Log time of one chunk.
 };
 
 /// Makes the bytes of an MCAP file: chunked, not compressed, indexed, with all CRCs. The same calls

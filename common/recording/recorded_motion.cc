@@ -107,7 +107,7 @@ class Reader {
   const Choice& choice_;
   std::string path_;
   std::optional<std::int64_t> zero_wall_ns_;
-  std::optional<std::string> subject_;  ///< Of the bodies.
+  std::optional<std::string> subject_;  ///< Subject of the bodies.
   CharacterTables characters_;
   DeviceTables devices_;
   RecordedMotion motion_;

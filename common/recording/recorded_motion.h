@@ -11,7 +11,7 @@
 
 namespace footing::bids {
 
-/// What of a recording becomes a run of a data set.
+/// Parts of a recording that become a run of a data set.
 struct Choice {
   std::string trial;  ///< The frames of this trial, and from its first one on all samples and
                       ///< events; empty: everything.
@@ -19,8 +19,9 @@ struct Choice {
   bool with_role = false;          ///< Only devices that have a role.
 };
 
+/// A recording as the tables of a data set.
 struct RecordedMotion {
-  std::vector<MotionTable> tables;  ///< Of footing-sim, then one for each device that sent samples.
+  std::vector<MotionTable> tables;  ///< The table of footing-sim first, then one a sending device.
   std::vector<Event> events;        ///< In order for each server's start.
   std::string config;  ///< The last EffectiveConfig of the recording; empty: it has none.
 };

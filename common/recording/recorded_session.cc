@@ -129,7 +129,7 @@ class TickCollector {
   std::map<std::uint16_t, Topic> topics_;
   std::map<std::string, std::size_t> latest_;
   std::map<std::size_t, std::map<std::uint32_t, RecordedTick>> ticks_;
-  std::optional<std::uint64_t> no_instant_ns_;  ///< Of a message.
+  std::optional<std::uint64_t> no_instant_ns_;  ///< Time of a message that no clock can show.
 };
 
 }  // namespace

@@ -15,19 +15,20 @@ namespace footing::recording {
 
 /// A channel's message as it was published, borrowed from the recording.
 struct RecordedChannel {
-  std::uint32_t field = 0;  ///< Of v1::Tick.
+  std::uint32_t field = 0;  ///< Field of v1::Tick.
   std::string_view bytes;   ///< The serialised message.
 };
 
+/// One tick with the channels that were recorded of it.
 struct RecordedTick {
   std::int64_t host_ns = 0;    ///< CLOCK_MONOTONIC of the server: when the tick was made.
   std::uint32_t sequence = 0;  ///< The tick's, lowest 32 bits.
   std::vector<RecordedChannel> channels;
 };
 
-/// What one server published from its start to its end.
+/// Everything that one server published from its start to its end.
 struct RecordedServer {
-  std::string name;       ///< Of its topics: the server's id, with a number when there are several.
+  std::string name;       ///< Name of its topics: the server's id, numbered if there are several.
   std::string server_id;  ///< "footingd" or "footing-sim".
   std::string version;
   std::uint64_t epoch = 0;  ///< 0 when the recording does not say.

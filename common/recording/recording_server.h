@@ -109,7 +109,7 @@ struct RecordedWelcome {
   std::int64_t recorder_ns = 0;
 };
 
-/// What a recording says of one server.
+/// Description of one server in a recording.
 struct RecordedServer {
   std::string name;
   std::int64_t offset_ns = 0;   ///< Its clock minus the recorder's.

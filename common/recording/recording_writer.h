@@ -55,12 +55,14 @@ class OutputFile {
   bool failed_ = false;  ///< A Write() was.
 };
 
+/// Settings of a recording's file.
 struct WriterSettings {
   std::string library;   ///< Name and version of the program, e.g. "footing-log 0.1.0".
   bool replace = false;  ///< An existing file may be overwritten.
   mcap::WriterOptions chunks;
 };
 
+/// Times and number of one message.
 struct Stamp {
   std::int64_t log_ns = 0;      ///< CLOCK_MONOTONIC of the server: when the tick was made.
   std::int64_t publish_ns = 0;  ///< CLOCK_MONOTONIC of the recorder: when it arrived.

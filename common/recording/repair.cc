@@ -84,7 +84,8 @@ class Copier {
       writer_.Add(record);
     }
     server.damage = damage_;
-    // What a reconnected recorder fetched from the ring has lower numbers than the tick before it.
+    // A tick that a reconnected recorder fetched from the ring has a lower number than the one
+    // before it.
     if (fresh || message.sequence > server.last.sequence) server.last = message;
   }
 

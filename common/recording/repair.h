@@ -8,7 +8,7 @@
 
 namespace footing::recording {
 
-/// What a repair kept and what it found.
+/// Contents that a repair kept, and its findings.
 struct RepairReport {
   std::uint64_t messages = 0;
   std::uint64_t attachments = 0;

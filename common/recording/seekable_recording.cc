@@ -15,10 +15,10 @@ namespace {
 
 namespace pb = google::protobuf;
 
-/// Of one file, 36 hours: what is kept of them takes some 90 MB.
+/// Limit for one file, 36 hours: what is kept of them takes some 90 MB.
 constexpr std::size_t kMostChunks = 131'072;
 constexpr std::uint64_t kMostIndexBytes = 64ull << 20;
-/// Of all sessions and clocks, and of one message.
+/// Limits for all sessions and clocks, and for one message.
 constexpr std::uint64_t kMostMetadataBytes = 64ull << 20;
 constexpr std::size_t kMostMessageBytes = std::size_t{64} << 20;
 
@@ -216,7 +216,7 @@ std::vector<PlacedTick> SeekableRecording::Ticks(std::int64_t from_ns, std::int6
     v1::Tick& tick = ticks[place->second].tick;
     const pb::FieldDescriptor* field =
         v1::Tick::descriptor()->FindFieldByNumber(static_cast<int>(channel->second.field));
-    // What a resume sends again is here already.
+    // A channel that a resume sends again is here already.
     if (tick.GetReflection()->HasField(tick, field)) return;
     if (!Parse(channel->second.field, message.data, tick)) {
       tick.GetReflection()->ClearField(&tick, field);

@@ -40,11 +40,11 @@ class SeekableRecording {
                                         const std::vector<std::string>& names,
                                         const std::set<std::string>& channels);
 
-  /// Of the first and last message of these servers.
+  /// Times of the first and last message of these servers.
   std::int64_t first_ns() const { return first_ns_; }
   std::int64_t last_ns() const { return last_ns_; }
   bool Has(std::size_t server) const { return !servers_[server].channels.empty(); }
-  /// What cannot be played of a cut or damaged file, and the repair; empty when all can.
+  /// Parts of a cut or damaged file that cannot be played, and the repair; empty when all can.
   std::string Limits() const;
   /// UNIX time less the recorder's clock; nothing when the recording does not say.
   std::optional<std::int64_t> wall_minus_clock_ns() const { return wall_minus_clock_ns_; }
@@ -66,7 +66,7 @@ class SeekableRecording {
  private:
   struct ChannelPlace {
     std::size_t server = 0;
-    std::uint32_t field = 0;  ///< Of v1::Tick.
+    std::uint32_t field = 0;  ///< Field of v1::Tick.
   };
 
   SeekableRecording(std::string path, recording::MappedFile file)
@@ -88,7 +88,7 @@ class SeekableRecording {
   std::string path_;
   recording::MappedFile file_;
   mcap::Summary summary_;
-  std::string problem_;  ///< Of a file without an index.
+  std::string problem_;  ///< Problem of a file without an index.
   std::vector<RecordedServer> servers_;
   std::map<std::uint16_t, ChannelPlace> channels_;
   std::map<std::uint64_t, bool> usable_chunks_;  ///< Those checked, by offset.

@@ -38,9 +38,9 @@ class StreamRecorder {
 
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t missing_ticks() const { return missing_ticks_; }
-  /// Of the newest tick, on the server's clock; 0: none.
+  /// Time of the newest tick, on the server's clock; 0: none.
   std::int64_t last_host_ns() const { return last_host_ns_; }
-  /// What slows the server or this session, in the server's words, and how often it said so.
+  /// Notice of what slows the server or this session, in the server's words, and how often it came.
   const std::string& notice() const { return notice_; }
   std::uint64_t notices() const { return notices_; }
   /// The last state of the link, for a person.
@@ -79,6 +79,7 @@ class ServerNames {
   std::map<std::string, std::string> address_of_;
 };
 
+/// Server to record, and the calls that its recorder makes.
 struct ServerRecorderOptions {
   transport::Address address;
   std::string client_name;

@@ -11,7 +11,7 @@
 
 namespace footing::clock {
 
-/// What a follower and its timekeeper send each other over a Unix socket, in the host's byte order:
+/// Messages of a follower and its timekeeper over a Unix socket, in the host's byte order:
 /// both are of one build on one machine. A follower begins with a TurnEnd that is due at once.
 struct TurnEnd {
   std::int64_t now_ns = 0;   ///< At its end.
@@ -87,7 +87,7 @@ std::int64_t ThreadCpuNs();
 /// Waits until MonotonicNs() reaches `deadline_ns`.
 void SleepUntil(std::int64_t deadline_ns);
 
-/// Of the environment: the socket of the timekeeper that the programs started with it follow.
+/// Environment variable: the socket of the timekeeper that the programs started with it follow.
 constexpr char kTimekeeperVariable[] = "FOOTING_TIMEKEEPER";
 
 /// Lets the calling thread follow the timekeeper of the environment, if there is one, from its
@@ -106,7 +106,7 @@ void Follow(std::unique_ptr<Follower> follower);
 /// write to a socket: who follows the same timekeeper and listens has a turn at this instant.
 void Act();
 
-/// Of the calling thread; null: it has the host's time.
+/// Follower of the calling thread; null: it has the host's time.
 Follower* OwnFollower();
 
 /// Gives simulated time to threads of several processes: one works at a time, and once none has

@@ -68,7 +68,7 @@ class Binder {
     std::function<nlohmann::ordered_json()> read;
     bool text = false;
     std::string origin = "default";
-    /// What exactly is wrong with a value that is not assigned, where `allowed` does not say it.
+    /// Reason why a value is not assigned, where `allowed` does not say it.
     std::function<std::string(const nlohmann::ordered_json&)> why = {};
   };
 
@@ -98,7 +98,7 @@ std::vector<Change> Differences(const Binder& before, const Binder& after);
 /// (the last one of a key that stands twice). Of a text that is not JSON those before the fault.
 std::map<std::string, int> LinesOfKeys(const std::string& text);
 
-/// What a program says that has read its config again: `before` held until now, `after` holds from
+/// Lines of a program that has read its config again: `before` held until now, `after` holds from
 /// now on, and `wanted` was read. `files` are settings whose files have another content. One line,
 /// and another one where what was read needs a restart.
 std::vector<std::string> DescribeReload(const Binder& before, const Binder& after,

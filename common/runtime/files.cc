@@ -210,7 +210,7 @@ Result<void> ReplaceFile(const std::string& path, const std::string& text) {
   const std::string target = std::filesystem::canonical(path, not_there);
   const std::string& final_path = not_there ? path : target;
   const std::string beside = final_path + ".new";
-  unlink(beside.c_str());  // Of a program that was ended in the middle.
+  unlink(beside.c_str());  // Left by a program that was ended in the middle.
   const int file = open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file < 0) return Failure(std::strerror(errno));
   int error = CopyRights(final_path, file);

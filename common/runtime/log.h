@@ -11,11 +11,12 @@ namespace footing::log {
 /// never calls it logs under the name of its file.
 void Start(const std::string& program, bool quiet);
 
+/// Logs a line at one of three levels.
 void Info(const std::string& line);
 void Warning(const std::string& line);
 void Error(const std::string& line);
 
-/// What a line is about, as fields of the journal: FOOTING_DEVICE, FOOTING_SESSION and
+/// Subject of a line, as fields of the journal: FOOTING_DEVICE, FOOTING_SESSION and
 /// FOOTING_CHANNEL. Empty or 0: not about one.
 struct Fields {
   std::string device;  ///< Its serial.
@@ -25,6 +26,7 @@ struct Fields {
 
 enum class Level { kInfo, kWarning, kError };
 
+/// Logs a line with the fields that name its subject.
 void Write(Level level, const std::string& line, const Fields& fields);
 
 }  // namespace footing::log

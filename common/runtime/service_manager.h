@@ -10,7 +10,7 @@
 
 #include "common/runtime/timer.h"
 
-/// What a program reports to the service manager that started it (sd_notify(3)), and what it got
+/// Reports of a program to the service manager that started it (sd_notify(3)), and what it got
 /// from it (sd_listen_fds(3)). Started by hand, nothing of this happens.
 namespace footing::service_manager {
 

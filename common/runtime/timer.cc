@@ -29,7 +29,7 @@ struct Waiting {
   }
 };
 
-/// Of one thread that follows a timekeeper, by expiry and, within an instant, in their order.
+/// Waits of one thread that follows a timekeeper, by expiry and, within an instant, in their order.
 struct Waits {
   std::map<std::pair<TimePoint, std::uint64_t>, Waiting> by_expiry;
   std::uint64_t last = 0;

@@ -27,7 +27,7 @@ ordered_json Summary(const Group& group, std::size_t index) {
   return summary;
 }
 
-/// What to believe of a test for groups that it takes as independent.
+/// Advice on the result of a test for groups that it takes as independent.
 std::string AdviceOnDesign(const StudyTable& table, const std::string& test) {
   const std::string assumption = test + " treats the groups as independent";
   if (table.blocks && table.blocks->subjects.size() > 1) {
@@ -405,7 +405,7 @@ namespace {
 constexpr double kStepY = 0.4;  // In units of the sharpest conditional deviation.
 constexpr double kStepLogS = 0.1;
 constexpr double kReachY = 9;           // P(|Y| > 9) = 2e-19.
-constexpr double kNegligible = 1e-18;   // Of a sum so far.
+constexpr double kNegligible = 1e-18;   // Share of a sum so far.
 constexpr double kBeyondDoubles = 39;   // The normal tail is below the smallest double.
 constexpr double kLogNegligible = -46;  // exp(-46) = 1e-20.
 

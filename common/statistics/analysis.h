@@ -22,6 +22,7 @@ namespace footing::statistics {
 
 enum class TestKind { kDunnett, kSteel, kPaired, kRate };
 
+/// Test to run and its settings.
 struct AnalysisRequest {
   TestKind test = TestKind::kSteel;
   Alternative alternative = Alternative::kTwoSided;
@@ -41,7 +42,7 @@ std::string_view NameOf(Alternative alternative);
 std::string_view NameOf(Method method);
 std::string_view NameOf(Ties ties);
 
-/// What a command line may name, and what it is without a name.
+/// Names for a command line; the first is the default.
 inline constexpr std::array kTests{TestKind::kDunnett, TestKind::kSteel, TestKind::kPaired,
                                    TestKind::kRate};
 inline constexpr std::array kAlternatives{Alternative::kTwoSided, Alternative::kGreater,
@@ -49,6 +50,7 @@ inline constexpr std::array kAlternatives{Alternative::kTwoSided, Alternative::k
 inline constexpr std::array kAllTies{Ties::kPairwise, Ties::kJoint};
 inline constexpr std::array kMethods{Method::kExact, Method::kPermutation, Method::kAsymptotic};
 
+/// Names of all values of an enum.
 template <typename Enum, std::size_t count>
 std::vector<std::string> NamesOf(const std::array<Enum, count>& all) {
   std::vector<std::string> names;
@@ -74,13 +76,14 @@ using nlohmann::ordered_json;
 /// The rows of a report, what stands beside them, and what its note depends on.
 struct Findings {
   std::string method;     ///< As `--method` names it, or "quadrature".
-  std::string procedure;  ///< What was computed, in words.
+  std::string procedure;  ///< Description of the computation.
   ordered_json rows = ordered_json::array();
   ordered_json extra = ordered_json::object();  ///< Fields beside the rows.
   /// Remarks on the data for the note: clauses without a full stop.
   std::vector<std::string> remarks;
 };
 
+/// Each runs one test on a table and reports its rows.
 Result<Findings> ReportDunnett(const StudyTable& table, const AnalysisRequest& request);
 Result<Findings> ReportSteel(const StudyTable& table, const AnalysisRequest& request);
 Result<Findings> ReportPaired(const StudyTable& table, const AnalysisRequest& request);
@@ -150,6 +153,7 @@ inline double QuantileOf(std::vector<double> values, double share) {
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
+/// Median of the values.
 inline double MedianOf(std::vector<double> values) { return QuantileOf(std::move(values), 0.5); }
 
 }  // namespace footing::statistics

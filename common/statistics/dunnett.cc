@@ -13,7 +13,7 @@
 namespace footing::statistics {
 namespace {
 
-/// What both designs come down to.
+/// Quantities to which both designs come down.
 struct Fit {
   std::vector<double> means;  ///< The control's first.
   std::vector<double> sizes;

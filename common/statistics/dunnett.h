@@ -10,12 +10,13 @@ namespace footing::statistics {
 /// One treatment against the control.
 struct DunnettRow {
   double estimate = 0;        ///< Mean of the treatment less that of the control.
-  double standard_error = 0;  ///< Of the estimate, from the pooled deviation.
+  double standard_error = 0;  ///< Standard error of the estimate, from the pooled deviation.
   double t = 0;               ///< Their ratio; +-greatest double if the error alone is 0.
   double p = 1;               ///< Adjusted for all comparisons (single step).
   Interval interval;          ///< Simultaneous, one-sided for a one-sided alternative.
 };
 
+/// Result of Dunnett's test, a row a treatment.
 struct Dunnett {
   double degrees = 0;
   double critical = 0;       ///< |t| (one-sided: t) that p = 1 - confidence belongs to.

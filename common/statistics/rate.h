@@ -20,11 +20,12 @@ inline constexpr double kMostEvents = 1e6;
 /// groups are without events).
 struct RateRatio {
   double statistic = 0;     ///< Signed root of the likelihood ratio; exact test: events.
-  double unadjusted_p = 1;  ///< Of this comparison alone.
+  double unadjusted_p = 1;  ///< P of this comparison alone.
   double p = 1;             ///< By Holm's adjustment for all comparisons.
   Interval interval;        ///< Simultaneous by Bonferroni.
 };
 
+/// One treatment's rate against the control's, under both models.
 struct RateRow {
   double ratio = 0;  ///< Estimate under the Poisson model: events per exposure.
   RateRatio poisson;
@@ -32,11 +33,12 @@ struct RateRow {
   RateRatio negative_binomial;
 };
 
+/// Result of the comparison of rates, a row a treatment.
 struct Rates {
-  std::vector<double> rates;    ///< Of the groups, the control's first: events per exposure.
+  std::vector<double> rates;    ///< Rates of the groups, the control's first: events per exposure.
   double pearson_ratio = 0;     ///< Pearson's chi-square over its degrees: 1 under Poisson.
   double overdispersion_p = 1;  ///< P of a chi-square as great under Poisson.
-  /// Of the negative binomial model: variance = mean + dispersion mean^2. 0: Poisson.
+  /// Dispersion of the negative binomial model: variance = mean + dispersion mean^2. 0: Poisson.
   double dispersion = 0;
   std::vector<RateRow> rows;
 };
@@ -61,7 +63,7 @@ class NegativeBinomial {
 
   double greatest_log_likelihood() const { return greatest_; }
   double dispersion() const { return dispersion_; }
-  /// Of the greatest likelihood: 0 for a group without events.
+  /// Rate of the greatest likelihood: 0 for a group without events.
   double rate(std::size_t group) const { return rates_[group]; }
 
   /// The greatest log likelihood where the rate of `group` is `ratio` times the control's.

@@ -253,7 +253,7 @@ class TableWalk {
 
   bool Run() {
     if (LogLeastTables(left_) > std::log(static_cast<double>(most_)) + 1e-9) return false;
-    // Of the n! / (n_0! ... n_k!) assignments, a table has the product of t! / (c_0! ... c_k!).
+    // A table has the product of t! / (c_0! ... c_k!) of the n! / (n_0! ... n_k!) assignments.
     double log_probability = 0;
     for (const std::size_t size : left_) log_probability += log_factorials_[size];
     std::size_t all = 0;

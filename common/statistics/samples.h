@@ -15,12 +15,13 @@
 /// Tests of several treatments against one control: what a study of interfaces asks.
 namespace footing::statistics {
 
-/// Of a treatment in relation to the control: different, greater values, or smaller values.
+/// Alternative hypothesis: values of a treatment are different, greater or smaller.
 enum class Alternative { kTwoSided, kGreater, kLess };
 
 /// Where p comes from: every relabelling, random ones, or the limit distribution.
 enum class Method { kExact, kPermutation, kAsymptotic };
 
+/// Values under one condition.
 struct Group {
   std::string name;
   std::vector<double> values;  ///< Finite, in any order.
@@ -33,7 +34,7 @@ using Groups = std::vector<Group>;
 struct Blocks {
   std::vector<std::string> groups;          ///< The control first.
   std::vector<std::string> subjects;        ///< One for each row of `values`.
-  std::vector<std::vector<double>> values;  ///< Of a subject, in the order of `groups`.
+  std::vector<std::vector<double>> values;  ///< Values of a subject, in the order of `groups`.
 };
 
 /// An end without a bound is infinite.
@@ -72,13 +73,14 @@ struct Relabelling {
   std::size_t most_tables = 4'000'000;  ///< That an exact test runs through.
 };
 
-/// Of one comparison.
+/// Result of one comparison.
 struct RelabelledRow {
   double p = 1;  ///< Adjusted: share of relabellings whose greatest evidence reaches this one's.
-  double standard_error = 0;  ///< Of p, from random relabelling; 0 if exact.
+  double standard_error = 0;  ///< Standard error of p by random relabelling; 0 if exact.
   double smallest_p = 0;      ///< The least that p can be with these values; 0 if unknown.
 };
 
+/// Result of a relabelling test, a row a comparison.
 struct Relabelled {
   Method method = Method::kExact;
   double relabellings = 0;  ///< Distinct tables run through, or random draws.
@@ -127,6 +129,7 @@ struct RankScore {
   double z = 0;
 };
 
+/// Steel's score of each treatment against the control.
 std::vector<RankScore> SteelScores(const Groups& groups, Ties ties);
 
 /// The limit distribution of max z_i: z_i become normal, with correlations l_i l_j.
@@ -150,7 +153,7 @@ Result<Relabelled> SteelRelabelling(const Groups& groups, Alternative alternativ
 /// All values in one order, without the values: what rank statistics depend on.
 struct RankedLabels {
   std::vector<std::size_t> group_sizes;  ///< The control's first.
-  std::vector<std::size_t> class_sizes;  ///< Of equal values, in rising order.
+  std::vector<std::size_t> class_sizes;  ///< Numbers of equal values, in rising order.
   std::vector<std::size_t> labels;       ///< The group of each value, in rising order.
 };
 RankedLabels Rank(const Groups& groups);
@@ -174,7 +177,7 @@ struct RankCounts {
 class SteelScale {
  public:
   SteelScale(const RankedLabels& ranked, Ties ties);
-  /// Of group `i` >= 1.
+  /// Score of group `i` >= 1.
   RankScore Score(std::size_t i, const RankCounts& counts) const;
   /// E[psi(1, 2) psi(1, 3)] over random values 1, 2, 3 of all, with psi = -1/2, 0, 1/2 as the first
   /// is greater, equal or smaller: 1/12 without ties.
@@ -188,6 +191,7 @@ class SteelScale {
   double shared_covariance_ = 0;  ///< See shared_covariance().
 };
 
+/// Counts of each treatment for these labels, in the order of `ranked`.
 RankCounts CountLabels(const RankedLabels& ranked, const std::vector<std::size_t>& labels);
 
 /// Runs through all ways to deal the classes to groups of these sizes, with the probability of each

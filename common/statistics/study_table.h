@@ -10,19 +10,21 @@
 
 namespace footing::statistics {
 
-/// What a table is read for.
+/// Purpose for which a table is read.
 enum class TableUse {
   kIndependent,  ///< group_index, group, value.
   kPaired,       ///< subject, group, value; every subject in every group once.
   kCounts,       ///< As kIndependent with whole values; exposure, where there is one.
 };
 
+/// File to read, and its use.
 struct TableRequest {
   std::string file;     ///< For messages.
   std::string control;  ///< Name of the control; empty: see ParseStudyTable.
   TableUse use = TableUse::kIndependent;
 };
 
+/// Values of a study by group, and by subject where they are paired.
 struct StudyTable {
   Groups groups;                               ///< The control first.
   std::vector<std::vector<double>> exposures;  ///< As `groups`; 1 without such a column.
@@ -41,7 +43,7 @@ Result<StudyTable> ParseStudyTable(std::string_view text, const TableRequest& re
 
 /// One line of a study table.
 struct TableRow {
-  std::size_t line = 0;  ///< Of the file, from 1.
+  std::size_t line = 0;  ///< Line in the file, from 1.
   std::string subject;
   std::string group;
   std::optional<std::size_t> group_index;
@@ -49,6 +51,7 @@ struct TableRow {
   double exposure = 1;
 };
 
+/// Rows of a table, and which of its columns there are.
 struct TableRows {
   std::vector<TableRow> rows;
   bool has_subject = false;

@@ -281,7 +281,7 @@ EffectSize DeltaWithInterval(double delta, double variance, double n, double z) 
           {std::max(-1.0, (centre - reach) / divisor), std::min(1.0, (centre + reach) / divisor)}};
 }
 
-/// Of each value: the share of `others` (sorted) below it less the share above it.
+/// Dominance of each value: the share of `others` (sorted) below it less the share above it.
 std::vector<double> Dominances(const std::vector<double>& values,
                                const std::vector<double>& others) {
   std::vector<double> dominances;

@@ -44,8 +44,8 @@ SignedRanks WilcoxonTest(const std::vector<double>& differences, Alternative alt
 /// Holm's step-down adjustment.
 std::vector<double> Holm(const std::vector<double>& p);
 
-/// Of a treatment (index in `blocks.groups`) less the control, one for each subject. What is left
-/// of equal values by rounding counts as 0.
+/// Differences of a treatment (index in `blocks.groups`) less the control, one for each subject.
+/// A difference that rounding leaves of equal values counts as 0.
 std::vector<double> Differences(const Blocks& blocks, std::size_t treatment);
 
 /// Exact where all values are equal. There must be one value.
@@ -94,7 +94,7 @@ EffectSize PairedDelta(const std::vector<double>& differences, double z);
 /// Ranks from 1; tied values share the mean of theirs.
 struct MeanRanks {
   std::vector<double> ranks;  ///< In the order of the values.
-  double tie_sum = 0;         ///< Of t^3 - t over the groups of t tied values.
+  double tie_sum = 0;         ///< Sum of t^3 - t over the groups of t tied values.
 };
 
 /// Values above the least one of a group by at most this share of it are tied; 0: equal ones, and

@@ -19,7 +19,7 @@ class MadeRecording {
   MadeRecording(const MadeRecording&) = delete;
   MadeRecording& operator=(const MadeRecording&) = delete;
 
-  /// What follows is of this server, whose wall time is known where `host_ns` is not 0.
+  /// From here on all is of this server, whose wall time is known where `host_ns` is not 0.
   void Begin(const std::string& server_id, std::int64_t host_ns = 0,
              std::int64_t wall_time_ns = 0) {
     v1::Welcome welcome;

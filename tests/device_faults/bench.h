@@ -64,11 +64,11 @@ class Device {
   std::shared_ptr<int> alive_ = std::make_shared<int>();
 };
 
-/// Of a wait for what is no matter of time: no load of the machine explains more.
+/// Longest wait for an event whose time does not matter: no load of the machine explains more.
 constexpr double kPatienceS = 30;
 
 struct PlugOptions {
-  int number = -1;  ///< Of the hidraw node; -1: the next free one.
+  int number = -1;  ///< Number of the hidraw node; -1: the next free one.
   std::string driver = "wiimote";
   bool identified = true;        ///< False: udev has neither name nor serial yet.
   std::int32_t open_errno = 0;   ///< Not 0: opening fails with it.
@@ -126,7 +126,7 @@ class Bench {
   boost::asio::io_context& io() { return io_; }
   std::string Log() const;
   std::size_t LogLines(const std::string& containing) const;
-  /// What the client missed; not what footingd left out of its rhythm.
+  /// Gaps that the client missed; not what footingd left out of its rhythm.
   const std::vector<v1::Gap>& gaps() const { return gaps_; }
   /// The resident memory of footingd.
   std::int64_t MemoryBytes() const;

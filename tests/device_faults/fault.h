@@ -24,7 +24,7 @@ class Fault : public testing::Test {
     bench.EndFaults();
     for (const std::string& wrong : bench.seen().wrongs()) ADD_FAILURE() << wrong;
     EXPECT_EQ(bench.Stop(), 0) << "footingd's end";
-    EXPECT_EQ(bench.LogLines("ERROR: "), 0u);  // Of a sanitizer.
+    EXPECT_EQ(bench.LogLines("ERROR: "), 0u);  // Errors of a sanitizer.
     EXPECT_EQ(bench.LogLines("runtime error"), 0u);
     if (HasFailure()) std::cerr << bench.Log();
   }

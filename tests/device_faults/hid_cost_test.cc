@@ -5,7 +5,7 @@
 namespace footing::device_faults {
 namespace {
 
-constexpr double kMostRatio = 3;  // Of issue 3.
+constexpr double kMostRatio = 3;  // Ratio of issue 3.
 constexpr int kDevices = 8;
 constexpr double kSeconds = 12;
 
@@ -17,7 +17,7 @@ struct Cost {
 
 class HidCost : public Fault {
  protected:
-  /// Of all nodes: the openings from `first` on, up to `end`, that are read.
+  /// Cost of all nodes: the openings from `first` on, up to `end`, that are read.
   static Cost Of(const std::vector<Device*>& devices, const std::vector<std::uint32_t>& first,
                  const std::vector<std::uint32_t>& end) {
     Cost cost;

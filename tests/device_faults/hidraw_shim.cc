@@ -162,7 +162,7 @@ int Ioctl(const OpenNode& node, unsigned long request, void* argument) {
   if (control < 0) return -1;
   unsigned char bytes[kMaxIoctlBytes];
   const unsigned size = _IOC_SIZE(request);
-  // Of HIDIOCGRDESC only the size goes in; the rest may lie outside what the caller has.
+  // Only the size goes in for HIDIOCGRDESC; the rest may lie outside what the caller has.
   const unsigned in = _IOC_NR(request) == 2 ? 4 : size;
   const auto number = static_cast<std::uint32_t>(request);
   std::memcpy(bytes, &number, 4);

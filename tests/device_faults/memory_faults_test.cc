@@ -107,7 +107,7 @@ FOOTING_FAULT(Fault16AcknowledgementWithError2) {
 FOOTING_FAULT(Fault17DisconnectBetweenTwoPieces) {
   auto board = std::make_shared<BoardModel>(17);
   Device* device = &bench.Plug(board);
-  // Of the 24 bytes of corners the first piece comes, then the link is gone.
+  // The first piece of the 24 bytes of corners comes, then the link is gone.
   bool cut = false;
   device->outgoing = [&cut, device, pieces = 0](const Report& report) mutable {
     if (report[0] != kReadReply || report[5] < 0x20 || report[5] > 0x24 || ++pieces > 1) {

@@ -5,8 +5,8 @@
 
 namespace footing::device_faults {
 
-/// What the bench and the shim share of one /dev/hidrawN: a page in a file of the bench's folder.
-/// The shim runs in the program under test, so it holds plain lock-free numbers only.
+/// State that the bench and the shim share of one /dev/hidrawN: a page in a file of the bench's
+/// folder. The shim runs in the program under test, so it holds plain lock-free numbers only.
 struct NodePage {
   static constexpr std::uint32_t kMaxOpens = 256;
 

@@ -104,7 +104,7 @@ FOOTING_FAULT(Fault53NegativeForces) {
 
 FOOTING_FAULT(Fault54PersonStepsOnDuringTheTare) {
   auto board = std::make_shared<BoardModel>(54);
-  board->forces = {6, 5, -4, 8};  // What it shows when empty.
+  board->forces = {6, 5, -4, 8};  // Forces that it shows when empty.
   Device& device = bench.Plug(board);
   ASSERT_TRUE(bench.Start());
   ASSERT_TRUE(bench.UntilLive(device));

@@ -9,8 +9,8 @@
 
 namespace footing::device_faults {
 
-/// What footingd has published so far, and what is wrong with it whatever the fault: a number that
-/// is not finite, a sample before the one before it, a sample taken after it was received.
+/// Messages of footingd so far, and their flaws whatever the fault: a number that is not finite, a
+/// sample before the one before it, a sample taken after it was received.
 class Seen {
  public:
   void Take(const v1::Tick& tick);

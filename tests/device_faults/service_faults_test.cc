@@ -67,7 +67,7 @@ class ServiceFault : public Fault {
   }
   /// The well-behaved client got every sample of the device, 100 a second.
   void ExpectUndisturbed(Device& device) {
-    bench.Run(0.3);  // What a stall held back would come now.
+    bench.Run(0.3);  // A sample that a stall held back would come now.
     EXPECT_TRUE(bench.gaps().empty());
     ExpectAllAtRest(device, 50);
     const auto& samples = Motion(device);

@@ -124,7 +124,7 @@ class Door {
     return !options_.view_token.empty() && hello.token() == options_.view_token;
   }
 
-  /// What gives the role, counted up from what the caller is.
+  /// Role by the rules, counted up from what the caller is.
   v1::Role Deserved(const Caller& caller, const v1::Hello& hello) const {
     if (caller.peer.known) {
       if (caller.peer.user == 0 || caller.peer.user == kOwn.user) return v1::ROLE_ADMIN;
@@ -216,7 +216,7 @@ class Door {
   transport::AdmissionState state_;
   std::int64_t now_ns_ = 1;
   std::vector<Admitted> inside_;
-  std::map<std::string, std::vector<std::int64_t>> wrong_;  ///< Of each host: when it guessed.
+  std::map<std::string, std::vector<std::int64_t>> wrong_;  ///< Times of each host's guesses.
 };
 
 }  // namespace

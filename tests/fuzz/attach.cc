@@ -158,7 +158,7 @@ class Socket {
     if (how >= 250) program.peer.EndWriting();
   }
 
-  /// What the hub does of its own accord, with a device that there is or was.
+  /// Acts of the hub's own accord, with a device that there is or was.
   void Answer(std::uint8_t how) {
     const DeviceHandle device = how / 4;
     if (how % 4 == 0) return source_.Send(device, {0x15, 0x00});

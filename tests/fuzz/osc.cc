@@ -23,7 +23,7 @@ skeleton::DialectOptions OptionsOf(std::uint8_t byte) {
   return options;
 }
 
-/// What a sender of the dialect would say for a place comes back as that place.
+/// Checks that a place, as a sender of the dialect would send it, comes back as that place.
 void CheckRoundTrip(skeleton::Dialect dialect, const skeleton::DialectOptions& options,
                     const Eigen::Vector3d& p_K_m) {
   if (!(p_K_m.norm() < 1e6)) return;

@@ -18,7 +18,7 @@ struct Decoded {
 };
 
 struct Stream {
-  std::string_view bytes;  ///< Of the fuzzer's.
+  std::string_view bytes;  ///< Owned by the fuzzer.
   Decoded decoded;
 };
 

@@ -42,7 +42,7 @@ class RawPeer {
 
   bool open() const { return descriptor_ >= 0; }
   void Take(int descriptor);
-  /// What the socket takes of the bytes.
+  /// Writes as many of the bytes as the socket takes.
   void Write(std::string_view bytes);
   /// Everything that is there.
   std::string Read();

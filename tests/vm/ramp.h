@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-/// What the made devices measure: a ramp that names every sample, so that a client that gets only
-/// some of them knows how many are missing and whether one came twice.
+/// Samples of the synthetic devices: a ramp that names every sample, so that a client that gets
+/// only some of them knows how many are missing and whether one came twice.
 namespace footing::vm {
 
 inline constexpr std::int64_t kSamplePeriodNs = 10'000'000;  ///< 100 Hz.

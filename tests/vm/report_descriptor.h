@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-/// What a Wiimote and a Balance Board say of themselves over HID: 217 bytes, reports 10 to 1a out
-/// and 20 to 3f in, all of opaque bytes on a vendor's page.
+/// HID descriptor of a Wiimote and a Balance Board: 217 bytes, reports 10 to 1a out and 20 to 3f
+/// in, all of opaque bytes on a vendor's page.
 namespace footing::vm {
 
 struct ReportLength {

@@ -11,7 +11,7 @@
 
 namespace footing::vm {
 
-/// What reached a subscribed client of each device, between two instants of `received_ns`.
+/// Samples of each device that reached a subscribed client, between two instants of `received_ns`.
 class Tally {
  public:
   void TakeTick(const v1::Tick& tick, std::int64_t now_ns);
@@ -32,7 +32,7 @@ class Tally {
     std::uint64_t nunchuk_samples = 0;
     std::uint64_t turning_samples = 0;  ///< With an angular velocity.
     int last_step = -1;
-    std::uint64_t last_report_count = 0;  ///< Of this device since it attached.
+    std::uint64_t last_report_count = 0;  ///< Report count of this device since it attached.
     std::int64_t last_received_ns = 0;
     std::int64_t longest_silence_ns = 0;
     /// When this client had the first sample, and the first after each silence.

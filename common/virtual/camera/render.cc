@@ -54,7 +54,7 @@ Canvas Background(const Scene& scene) {
   return canvas;
 }
 
-/// What a ray sees of a ball; nothing when it misses.
+/// Light of a ball along a ray; nothing when it misses.
 std::optional<Eigen::Vector3d> Radiance(const Ball& ball, const Eigen::Vector3d& centre_C_m,
                                         const Eigen::Vector3d& ray) {
   const double along = ray.dot(centre_C_m);
@@ -151,7 +151,7 @@ struct Extent {
   double reach_px = 0;
 };
 
-/// What a ball covers, generously; nothing when it is not in sight.
+/// Extent of a ball in the image, generously; nothing when it is not in sight.
 std::optional<Extent> ExtentOf(const Scene& scene, const Ball& ball) {
   if (ball.p_C_m.z() < kNearestM) return std::nullopt;
   Extent extent{Project(scene.lens, ball.p_C_m), 0};

@@ -19,7 +19,7 @@ Mosaic Render(const Scene& scene, noise::Random& random);
 /// Frames of a scene at rest, one after the other: traced once, each read with noise of its own.
 std::vector<Mosaic> RenderStill(const Scene& scene, int frames, noise::Random& random);
 
-/// What the sensor makes of the light on it: mosaic, shot and read noise, rounding and clipping.
+/// Reading of the sensor for the light on it: mosaic, shot and read noise, rounding and clipping.
 Mosaic ReadOut(const Scene& scene, const Canvas& canvas, noise::Random& random);
 
 /// Normal numbers by the hundred thousand, for the pixels of a frame: xoshiro256++ (Blackman &

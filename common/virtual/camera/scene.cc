@@ -179,7 +179,7 @@ std::vector<std::uint8_t> ToYuyv(const Mosaic& mosaic) {
 
 namespace {
 
-/// What a ray from the camera meets of the sheet; both in the sheet's frame.
+/// Light of the sheet along a ray from the camera; both in the sheet's frame.
 std::optional<Eigen::Vector3d> SheetLight(const DotSheet& sheet, const Eigen::Vector3d& camera_S,
                                           const Eigen::Vector3d& ray_S) {
   const double reach = -camera_S.z() / ray_S.z();

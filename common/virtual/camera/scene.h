@@ -65,6 +65,7 @@ struct Sensor {
   double dn_per_electron = 0.03;
 };
 
+/// All that a rendered frame shows.
 struct Scene {
   Lens lens;
   Sensor sensor;
@@ -104,7 +105,7 @@ void AddClutter(Scene& scene, int count, noise::Random& random);
 /// A line that hides this share of the area of a ball's disc, from a random side.
 Occluder Hide(const Scene& scene, const Ball& ball, double share, noise::Random& random);
 
-/// What a camera that does not give its mosaic sends: missing colours as the mean of their
+/// Frame of a camera that does not give its mosaic: missing colours as the mean of their
 /// neighbours, then BT.601 luma and chroma of two pixels each, Y U Y V.
 std::vector<std::uint8_t> ToYuyv(const Mosaic& mosaic);
 

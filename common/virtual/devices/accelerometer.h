@@ -33,6 +33,7 @@ struct Shape {
 /// A wrist's swing: sharper at one end of its way than at the other.
 Shape WristShape();
 
+/// Specific force on both sensors, frame S, m/s2.
 struct Hands {
   Eigen::Vector3d left_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d right_mps2 = Eigen::Vector3d::Zero();
@@ -86,15 +87,17 @@ struct SensorModel {
   double range_mps2 = 29.42;  ///< Clips beyond +- this (3 g, the sensor's own range).
 };
 
+/// One sample of an accelerometer.
 struct SensorReading {
   Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();
   std::uint32_t clipped_axes = 0;  ///< Bits 0, 1, 2: x, y, z.
 };
 
-/// What the sensor makes of a true specific force: noise, then counts, then the end of the range.
+/// Reading of the sensor for a true specific force: noise, then counts, then the end of the range.
 SensorReading Read(const SensorModel& model, const Eigen::Vector3d& true_mps2,
                    noise::Random& random);
 
+/// Samples of both hands at one instant.
 struct TimedReading {
   std::int64_t sampled_ns = 0;
   SensorReading left;

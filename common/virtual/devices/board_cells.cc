@@ -18,7 +18,7 @@ namespace {
 
 using body::Landmark;
 
-constexpr double kHeelBehindM = 0.045;  // Of the ankle.
+constexpr double kHeelBehindM = 0.045;  // Distance of the heel behind the ankle.
 constexpr double kHeelHalfWidthM = 0.03;
 constexpr double kBallHalfWidthM = 0.04;
 // Standing height of a corner: lower in few frames only.
@@ -90,7 +90,7 @@ BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double c
 
 namespace {
 
-constexpr double kFlightShare = 0.06;  // Of the weight.
+constexpr double kFlightShare = 0.06;  // Largest vertical force in flight, share of the weight.
 constexpr double kReluctanceM = 0.025;
 constexpr double kMomentScaleM = 0.3;  // Makes the COP's rows as large as the total's.
 constexpr double kEquality = 30;       // Weight of total and COP against evenness.
@@ -177,7 +177,7 @@ std::array<FootForce, kFeet> ShareBetweenFeet(const BodyCourse& course,
   }
   const double total = reaction.force_n(2, frame);
   if (!reaction.supported[static_cast<std::size_t>(frame)]) {
-    // What is left of the force in flight goes to the lower foot, at its middle.
+    // The rest of the force in flight goes to the lower foot, at its middle.
     const bool right = height.head<kFootPoints>().sum() > height.tail<kFootPoints>().sum();
     feet[right ? 1 : 0].load_n = total;
     return feet;
@@ -214,8 +214,8 @@ namespace {
 // (docs/evaluation/momentum.md).
 constexpr double kSmoothForceHz = 8;
 constexpr double kHardPoseHz = 10, kHardForceHz = 12;
-constexpr double kHardShare = 0.05;  // Of the weight: by which both forces differ at an impact.
-constexpr double kHardHz = 4;        // Of the difference's mean square.
+constexpr double kHardShare = 0.05;  // Difference of both forces at an impact, share of the weight.
+constexpr double kHardHz = 4;        // Low-pass for the mean square of the difference.
 
 }  // namespace
 

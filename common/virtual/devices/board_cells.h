@@ -11,8 +11,8 @@
 #include "common/virtual/devices/noise.h"
 #include "common/virtual/motion/motion.h"
 
-/// What sensors under a moving body would measure: forces and centres of pressure by inverse
-/// dynamics, the cells of two boards with their limits and errors.
+/// Sensors under a moving body: forces and centres of pressure by inverse dynamics, and the cells
+/// of two boards with their limits and errors.
 namespace footing::virtual_sensors {
 
 inline constexpr int kFeet = 2;  ///< 0 is the left one.
@@ -76,7 +76,7 @@ inline constexpr std::size_t kInsoleCells = 16;
 /// Where a sole is on the ground.
 struct SolePlace {
   Eigen::Vector2d heel_m = Eigen::Vector2d::Zero();  ///< Middle of its heel, W.
-  double yaw_rad = 0;                                ///< Of the ball from the heel.
+  double yaw_rad = 0;                                ///< Direction from heel to ball, about z.
   double length_m = 0;                               ///< From heel to ball.
 };
 SolePlace PlaceOfSole(const BodyCourse& course, std::size_t foot, Eigen::Index frame);
@@ -143,7 +143,7 @@ class CellErrors {
  public:
   explicit CellErrors(const CellErrorConfig& config);
 
-  /// What the cells read under these forces, `step_s` after the sample before.
+  /// Reading of the cells under these forces, `step_s` after the sample before.
   Corners Advance(const Corners& true_n, double step_s);
 
   const std::array<double, 4>& gains() const { return gains_; }

@@ -33,7 +33,7 @@ class Memory {
   std::span<std::uint8_t> eeprom() { return eeprom_; }
   std::span<const std::uint8_t> camera() const { return camera_; }
   std::span<std::uint8_t> extension() { return extension_; }
-  /// What the detect pin of the port says.
+  /// State of the port's detect pin.
   bool has_extension() const {
     return port_ready_ && (motion_plus_mode_ != 0 || !extension_.empty());
   }
@@ -76,7 +76,7 @@ struct CameraPoint {
   int size = 1;  ///< 0 to 15.
 };
 
-/// What goes into one data report.
+/// Contents of one data report.
 struct Readings {
   std::uint16_t buttons = 0;  ///< First button byte in bits 8 to 15.
   /// 10 bits; of y and z the lowest is not sent.
@@ -88,7 +88,7 @@ struct Readings {
 /// Whether data reports of that mode have bytes of the extension.
 bool CarriesExtension(std::uint8_t mode);
 
-/// What a Wiimote and a Balance Board have in common: the device's end of the HID protocol. Bytes
+/// Common part of a Wiimote and a Balance Board: the device's end of the HID protocol. Bytes
 /// in, reports out; it knows no clock.
 class Controller {
  public:
@@ -160,6 +160,7 @@ enum class SerialOf {
 /// A Bluetooth address drawn from the seed.
 std::string MakeSerial(SerialOf kind, std::uint64_t seed);
 
+/// Input of a Wii U Pro Controller's user.
 struct ProControllerSensors {
   GamepadSensors gamepad;   ///< Its triggers are switches: the bits of `buttons` alone count.
   bool left_stick = false;  ///< Pressed in.

@@ -41,7 +41,7 @@ void PutWord(MotionPlusBlock& block, std::size_t at, int value) {
   block[at + 1] = static_cast<std::uint8_t>(value);
 }
 
-/// Of 14 bits, not yet bounded; `half` 0 is the fast range, 16 the slow one.
+/// Counts of 14 bits, not yet bounded; `half` 0 is the fast range, 16 the slow one.
 double GyroscopeCounts(const MotionPlusBlock& block, std::size_t half, std::size_t axis,
                        double degrees_per_s) {
   const int zero = Word(block, half + 2 * axis);

@@ -7,7 +7,7 @@
 
 #include "common/base/units.h"
 
-/// What is plugged into a Wiimote, as its registers and six data bytes: Nunchuk, Classic
+/// Extensions of a Wiimote, as registers and six data bytes: Nunchuk, Classic
 /// Controller, MotionPlus.
 namespace footing::virtual_devices {
 
@@ -15,7 +15,7 @@ enum class Accessory { kNone, kNunchuk, kClassic, kMotionPlus, kUnknown };
 
 using ExtensionBytes = std::array<std::uint8_t, 6>;
 
-/// What a Nunchuk feels, in its own frame S (x left, y front, z down).
+/// True input of a Nunchuk, in its own frame S (x left, y front, z down).
 struct NunchukSensors {
   double stick_x = 0;  ///< -1 left to 1 right.
   double stick_y = 0;  ///< -1 back to 1 front.
@@ -24,7 +24,7 @@ struct NunchukSensors {
   Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
 };
 
-/// What a gamepad's user does; bits of `buttons` as in the data bytes: byte 4 of a Classic
+/// Input of a gamepad's user; bits of `buttons` as in the data bytes: byte 4 of a Classic
 /// Controller in bits 8 to 15, byte 5 in bits 0 to 7, 1 pressed.
 struct GamepadSensors {
   double left_x = 0;  ///< -1 left to 1 right, -1 back to 1 front.
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> ClassicPage();
 std::vector<std::uint8_t> UnknownPage();
 std::vector<std::uint8_t> MotionPlusPage(const MotionPlusBlock& block, bool inside);
 
-/// What it sends, by its own calibration; ends at the range of the counts.
+/// Data bytes of a Nunchuk, by its own calibration; ends at the range of the counts.
 ExtensionBytes NunchukBytes(const NunchukBlock& block, const NunchukSensors& sensors);
 /// By nominal ranges: 6 bits of the left stick, 5 of the right one and the triggers.
 ExtensionBytes ClassicBytes(const GamepadSensors& sensors = {});

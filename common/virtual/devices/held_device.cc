@@ -13,8 +13,8 @@
 namespace footing::virtual_sensors {
 namespace {
 
-constexpr double kStrapShare = 0.5;   // Of the way along its segment.
-constexpr double kBeltBehindM = 0.1;  // Of the middle of the pelvis.
+constexpr double kStrapShare = 0.5;   // Share of the way along its segment.
+constexpr double kBeltBehindM = 0.1;  // Distance behind the middle of the pelvis.
 
 /// At a point of a joint. R_SW: of the T-pose.
 HeldCourse FollowPoint(const body::Body& body, const motion::Motion& motion,

@@ -10,7 +10,7 @@
 
 namespace footing::virtual_sensors {
 
-/// What a device on an arm or a belt measures, a column a frame, in its held frame S
+/// True motion of a device on an arm or a belt, a column a frame, in its held frame S
 /// (common/body/held_frame.h).
 struct HeldCourse {
   Eigen::Matrix3Xd specific_force_S_mps2;
@@ -44,13 +44,14 @@ struct HeldErrorConfig {
   double turn_count_radps = 0.00127;     ///< 595 degrees/s / 8192.
   double turn_bias_radps = 0.006;        ///< Constant; a rest can measure it.
   double turn_walk_radps_rt_s = 0.0003;  ///< The bias' random walk, after a second.
-  double gain_spread = 0.01;             ///< Of every axis of both.
+  double gain_spread = 0.01;             ///< Standard deviation of the gain of every axis of both.
   double grip_tilt_rad = 0.17;           ///< How it lies in the fist, about level axes,
   double grip_heading_rad = 0.07;        ///< and how far off it points in the T-pose.
   bool rolled = false;                   ///< Strapped with any turn about its x.
   std::uint64_t seed = 1;
 };
 
+/// One sample of a held device.
 struct HeldReading {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
@@ -62,10 +63,10 @@ class HeldErrors {
  public:
   explicit HeldErrors(const HeldErrorConfig& config);
 
-  /// Of a perfect device, but for the end of the accelerometer's range.
+  /// Errors of a perfect device, but for the end of the accelerometer's range.
   static HeldErrorConfig None();
 
-  /// What it measures of the truth, `step_s` after the reading before.
+  /// Reading for the truth, `step_s` after the reading before.
   HeldReading Advance(const Eigen::Vector3d& specific_force_mps2,
                       const Eigen::Vector3d& angular_velocity_radps, double step_s);
 

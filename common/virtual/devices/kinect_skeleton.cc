@@ -120,7 +120,8 @@ const std::array<KinectPoint, KinectSkeleton::kPoints>& KinectSkeleton::Expose(
   errors_.Expose();
   crouches_ = Crouches(at);
   const double kept = std::exp(-KinectErrors::kPeriodS / KinectErrors::kOffsetChangesS);
-  // What makes three times the deviation of all errors out of those that a seen joint has.
+  // Deviation that makes three times the deviation of all errors out of those that a seen joint
+  // has.
   const double inferred_m = std::sqrt(kInferredFactor * kInferredFactor - 1) * KinectErrors::SdM();
   for (std::size_t i = 0; i < kPoints; ++i) {
     KinectPoint& point = seen_[i];

@@ -43,14 +43,15 @@ struct KinectPoint {
   Eigen::Vector3d true_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   bool hidden = false;  ///< It is not seen, and inferred.
-  double sd_m = 1;      ///< Of all its errors, along each axis.
+  double sd_m = 1;      ///< Standard deviation of all its errors, along each axis.
 };
 
+/// Place and weaknesses of a simulated Kinect.
 struct KinectOptions {
   /// Hips below this share of their height in the T-pose: the tracker has lost the legs.
   double crouch_share = 0.85;
   bool hides = true;   ///< False: it sees every point at all times.
-  double yaw_rad = 0;  ///< Of the camera about W's origin: at a right angle the person's left side.
+  double yaw_rad = 0;  ///< Yaw of the camera about W's origin: at pi/2 the person's left side.
 };
 
 /// Both hands and the other joints of a person as a Kinect in front of the boards reports them
@@ -65,7 +66,7 @@ class KinectSkeleton {
 
   /// The next exposure, KinectErrors::kPeriodS after the one before: the joints are `at`.
   const std::array<KinectPoint, kPoints>& Expose(const body::Kinematics& at);
-  /// Of the last exposure.
+  /// Whether the person crouched at the last exposure.
   bool crouches() const { return crouches_; }
 
  private:
@@ -86,7 +87,7 @@ class KinectSkeleton {
   std::vector<Limb> limbs_;
   KinectErrors errors_;
   noise::Random noise_;
-  std::array<Eigen::Vector3d, kPoints> wandering_m_;  ///< Of each point while it is inferred.
+  std::array<Eigen::Vector3d, kPoints> wandering_m_;  ///< Error of each point while inferred.
   std::array<KinectPoint, kPoints> seen_;
   bool crouches_ = false;
 };

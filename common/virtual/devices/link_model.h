@@ -13,10 +13,11 @@ enum class LinkQuality { kIdeal, kGood, kPoor };
 /// "ideal", "good", "poor"; none for another name.
 std::optional<LinkQuality> LinkNamed(const std::string& name);
 
+/// Rates and quality of a simulated radio link.
 struct LinkConfig {
   LinkQuality quality = LinkQuality::kGood;
   double sensor_rate_hz = 100;   ///< How often the device's sensor takes a new sample.
-  double nominal_rate_hz = 100;  ///< Of reports on a good link.
+  double nominal_rate_hz = 100;  ///< Rate of reports on a good link.
   std::uint64_t seed = 1;
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 using body::Landmark;
 
-constexpr double kStandShare = 0.25;  // Of the frames have a foot lower than it stands.
+constexpr double kStandShare = 0.25;  // Share of the frames that have a foot lower than it stands.
 constexpr Eigen::Index kFramesPerProgress = 2000;
 
 // A T-pose of straight lines has its weight over the heels. A person leans ahead until it is over
@@ -157,7 +157,7 @@ constexpr double kMostTurnRad = 0.8;
 constexpr double kMostAheadM = 0.5, kLeastApartM = 0.06, kMostApartM = 0.8;
 constexpr double kMostThighTurnRad = 0.5;  // Clips of standing people begin with up to 0.56.
 constexpr double kFirstBendRad = 0.2;      // A straight knee could be bent either way.
-constexpr double kStretchedShare = 0.999;  // Of a leg's length: a straight one cannot be bent.
+constexpr double kStretchedShare = 0.999;  // Share of a leg's length; a straight leg cannot bend.
 
 /// The way from the right ankle to the left one as near to this as a person can stand.
 Eigen::Vector2d AsOneStands(const Eigen::Vector2d& apart_m) {

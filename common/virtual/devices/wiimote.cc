@@ -233,7 +233,7 @@ ExtensionBytes Wiimote::ExtensionPacket(const WiimoteSensors& sensors) {
   return {};
 }
 
-/// Of an active MotionPlus: its own and the child's in turn.
+/// Packet of an active MotionPlus: its own and the child's in turn.
 ExtensionBytes Wiimote::PassedPacket(const WiimoteSensors& sensors) {
   if (rubbish_packets_ > 0) return --rubbish_packets_ > 0 ? kNoAnswer : ExtensionBytes{};
   const std::uint8_t mode = controller_.memory().motion_plus_mode();

@@ -17,17 +17,18 @@ namespace footing::virtual_devices {
 /// Ten bytes of EEPROM: zero, 1 g, volume, sum.
 using AccelerationBlock = std::array<std::uint8_t, 10>;
 
+/// Model and calibration of a simulated Wiimote.
 struct WiimoteOptions {
   /// A 057e:0330, which always has a MotionPlus inside.
   bool tr = false;
   bool motion_plus_inside = false;
-  /// Of units that are known; else drawn from the seed.
+  /// Calibration of units that are known; else drawn from the seed.
   std::optional<AccelerationBlock> acceleration = std::nullopt;
   std::optional<NunchukBlock> nunchuk = std::nullopt;
   std::optional<MotionPlusBlock> motion_plus = std::nullopt;
 };
 
-/// What a Wiimote and what is plugged into it feel. S of the Wiimote: x left, y front, z down.
+/// True inputs of a Wiimote and its extension. S of the Wiimote: x left, y front, z down.
 struct WiimoteSensors {
   Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
   std::uint16_t buttons = 0;  ///< First button byte in bits 8 to 15.
@@ -111,12 +112,13 @@ class Wiimote {
   int refusals_ = 0;
 };
 
+/// Models of the PS Move, with their USB ids.
 enum class MoveModel {
   kZcm1,  ///< 054c:03d5: two samples a report, magnetometer.
   kZcm2,  ///< 054c:0c5e: one sample a report, sent twice; no magnetometer.
 };
 
-/// What a Move feels. S: x left, y front (to the sphere), z down (away from the buttons).
+/// True inputs of a Move. S: x left, y front (to the sphere), z down (away from the buttons).
 struct MoveSensors {
   Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();  ///< Right-handed.
@@ -157,7 +159,7 @@ class PsMove {
   /// 0 to 5, 0xee while charging, 0xef when charged.
   void set_battery(std::uint8_t raw) { battery_ = raw; }
   MoveModel model() const { return model_; }
-  /// What the feature reports bring; to be damaged by tests of damage.
+  /// Calibration in the feature reports; to be damaged by tests of damage.
   std::vector<std::uint8_t>& blob() { return blob_; }
 
  private:

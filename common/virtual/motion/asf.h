@@ -15,7 +15,7 @@
 
 namespace footing::motion {
 
-/// What an ASF file says, in its own axes (y up, z ahead), units and order.
+/// Contents of an ASF file, in its own axes (y up, z ahead), units and order.
 struct AsfText {
   struct Bone {
     std::string name;
@@ -28,7 +28,7 @@ struct AsfText {
   };
   struct Units {
     double length = 1;
-    double radians = kPi / 180;  ///< Of one unit of angle.
+    double radians = kPi / 180;  ///< Size of one unit of angle.
   };
 
   Units units;
@@ -75,7 +75,7 @@ struct AsfSkeleton {
   Eigen::Vector3d root_position_m = Eigen::Vector3d::Zero();
 
   double unit_m = 0;
-  double radians_per_angle = 0;  ///< Of the ASF file; AMC files say their own.
+  double radians_per_angle = 0;  ///< Angle unit of the ASF file; AMC files say their own.
 };
 
 /// `file` is the name for errors, which say the line and what was expected there. Bones that slide

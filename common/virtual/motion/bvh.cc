@@ -25,9 +25,9 @@ constexpr double kStillM = 0.001;
 struct Channel {
   int joint = 0;
   bool rotation = false;
-  Axis axis = Axis::kX;  ///< Of the file.
+  Axis axis = Axis::kX;  ///< Axis in the file.
   int dof = -1;          ///< Into q; -1 for the position of a joint that is not the root.
-  int stem_row = -1;     ///< Of such a position, into those of the stem (bvh_stem.h).
+  int stem_row = -1;     ///< Row of such a position in those of the stem (bvh_stem.h).
 };
 
 struct Header {
@@ -49,7 +49,7 @@ class HeaderTokens {
       line_ = *line;
     }
   }
-  /// What is left of the line, but for a brace at its end: a name with blanks.
+  /// Rest of the line, but for a brace at its end: a name with blanks.
   std::string_view Name() {
     std::string_view name = text::Trim(line_);
     line_ = {};
@@ -300,7 +300,7 @@ namespace {
 using body::Axis;
 using body::Joint;
 
-constexpr int kDecimals = 6;  // Of centimetres and degrees: finer than any capture, and stable.
+constexpr int kDecimals = 6;  // For centimetres and degrees: finer than any capture, and stable.
 
 /// A joint as the file can hold it: three rotations about the plain axes.
 struct Written {

@@ -11,8 +11,9 @@
 /// Biovision hierarchy (BVH): skeleton and motion in one text file; y up, z ahead, degrees.
 namespace footing::motion {
 
+/// Facts that a BVH file does not state.
 struct BvhOptions {
-  double unit_m = 0.01;  ///< Of lengths and positions. Centimetres are usual, never stated.
+  double unit_m = 0.01;  ///< Unit of lengths and positions. Centimetres are usual, never stated.
 };
 
 /// Reads a BVH file into W. Channels may stand in any order; the order of a joint's rotations is

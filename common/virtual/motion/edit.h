@@ -6,7 +6,7 @@
 #include "common/body/landmarks.h"
 #include "common/virtual/motion/motion.h"
 
-/// What is done to a motion before it is used.
+/// Edits of a motion before it is used.
 namespace footing::motion {
 
 /// The same pose by the angles nearest to those of `near_q`: of the triples and whole turns that
@@ -35,7 +35,7 @@ struct MotionRates {
   Eigen::MatrixXd q_dot;   ///< m/s, rad/s.
   Eigen::MatrixXd q_ddot;  ///< m/s^2, rad/s^2.
 };
-/// Of the spline through the poses, angles made continuous first. Smooth the motion before.
+/// Rates of the spline through the poses, angles made continuous first. Smooth the motion before.
 MotionRates Rates(const Motion& motion);
 
 /// The mirror image at the plane y = 0: left and right limbs change places, lengths too. Joints are

@@ -98,7 +98,7 @@ void AlignElbow(const motion::Motion& motion, int side, Segments& segments) {
   }
 }
 
-/// Of the angles of a limb: the left one is the mirror image of the right one.
+/// Signs of the angles of a limb: the left one is the mirror image of the right one.
 Vector3d SignsOf(int side) { return side == 1 ? Vector3d(1, 1, 1) : Vector3d(1, -1, -1); }
 
 /// The coordinates of one joint: angles about z, x and y of OpenSim.
@@ -180,8 +180,8 @@ class AngleReader {
     for (const int side : {0, 1}) AlignElbow(motion, side, segments_);
   }
 
-  /// Of equivalent angles those nearest to `near` are taken, or without it those nearest to the
-  /// frame that was read before.
+  /// Takes, of equivalent angles, those nearest to `near`, or without it those nearest to the frame
+  /// that was read before.
   void Read(Eigen::Index frame, const AngleReader* near) {
     body::ComputeKinematics(motion_.skeleton, motion_.q.col(frame), at_);
     for (std::size_t i = 0; i < all_.size(); ++i) {

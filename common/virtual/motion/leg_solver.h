@@ -15,7 +15,7 @@ struct FootPlace {
   double thigh_turn_rad = 0;  ///< As ThighTurn; LegAim::kWhole only.
 };
 
-/// What is asked for beside the place of the ankle.
+/// Target beside the place of the ankle.
 enum class LegAim {
   /// Where the foot points (x of its frame), with the last angle of the ankle.
   kFoot,
@@ -60,7 +60,7 @@ class LegSolver {
   /// The rotation of the T-pose, brought into the direction of `thigh` by the least turn.
   Eigen::Matrix3d Untwisted(const Thigh& thigh) const;
   Eigen::Matrix3Xd Columns(int joint, const Eigen::Vector3d& p_W);
-  /// What the thigh, and a point of the foot, have to move; how far it is, m.
+  /// Adds the correction for the thigh, and for a point of the foot; returns the distance left, m.
   double AddThigh(double turn_rad, Equations& equations);
   double AddFoot(const FootPlace& place, const Eigen::Vector3d& p_A, double weight,
                  Equations& equations);

@@ -23,11 +23,11 @@ using body::Landmark;
 using body::PointTarget;
 
 constexpr Eigen::Index kCalibrationFrames = 60;  // That place the markers on the segments.
-constexpr int kRounds = 3;                       // Of poses from places and places from poses.
-constexpr std::size_t kLeastMarkers = 10;        // Of a frame.
+constexpr int kRounds = 3;                       // Poses from places, then places from poses.
+constexpr std::size_t kLeastMarkers = 10;        // Markers of a frame.
 constexpr double kLongestHeldS = 1;              // A pose, in place of those not seen.
-constexpr double kLeastSine = 0.17;              // Of a limb that counts as bent: 10 degrees.
-// What a joint costs to move, m/rad: limbs hardly anything from the frame before; of the back, the
+constexpr double kLeastSine = 0.17;              // Sine of a limb's bend that counts: 10 degrees.
+// Cost of moving a joint, m/rad: limbs hardly anything from the frame before; of the back, the
 // neck, the shoulder girdle and what lies beyond the last markers, a centimetre for a large bend.
 constexpr double kHoldLimb = 0.002, kHoldSpine = 0.05;
 
@@ -303,8 +303,8 @@ namespace {
 
 using body::Landmark;
 
-constexpr Eigen::Index kMostFrames = 400;              // Of a trial for its lengths.
-constexpr double kLeastRatio = 0.6, kMostRatio = 1.6;  // Of a length over the standard one.
+constexpr Eigen::Index kMostFrames = 400;              // Frames of a trial that its lengths take.
+constexpr double kLeastRatio = 0.6, kMostRatio = 1.6;  // Ratio of a length to the standard one.
 
 /// Medians of distances between centres over the frames in which both are there.
 class Lengths {

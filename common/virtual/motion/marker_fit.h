@@ -14,6 +14,7 @@
 /// From markers to the motion of a skeleton.
 namespace footing::motion {
 
+/// Facts about the markers that the file does not state.
 struct MarkerFitOptions {
   std::string_view set = {};  ///< Name of the marker set; empty: the one that is there.
   body::Sex sex = body::Sex::kMean;
@@ -30,6 +31,7 @@ struct FittedMarker {
   double rms_m = 0;                               ///< From its measured places.
 };
 
+/// A motion fitted to markers, and how well it fits.
 struct MarkerFit {
   Motion motion;
   std::string set;

@@ -117,7 +117,7 @@ constexpr std::array<MarkerSet, 5> kSets = {{
      .cervicale = "C7",
      .sternum = "CLAV",
      .head = "LFHD RFHD LBHD RBHD"},
-    {.name = "cmu41",  // Of the CMU database: waist markers front and back.
+    {.name = "cmu41",  // Set of the CMU database: waist markers front and back.
      .left = "L",
      .right = "R",
      .asis = "@FWT",
@@ -217,7 +217,7 @@ std::string Spelt(const MarkerSet& set, std::string_view field, int side) {
   return text::Joined(names, " or ");
 }
 
-/// What of the necessary fields is not there; empty when all is.
+/// Names of the necessary fields that are missing; empty when none is.
 std::string Missing(const MarkerTracks& tracks, const MarkerSet& set, int& found) {
   std::vector<std::string> missing;
   found = 0;
@@ -234,7 +234,7 @@ std::string Missing(const MarkerTracks& tracks, const MarkerSet& set, int& found
   return text::Joined(missing);
 }
 
-/// What the file has, and what the set that is nearest to it would still need.
+/// Error with the markers of the file, and those that the nearest set would still need.
 std::string NoKnownSet(const MarkerTracks& tracks, const std::string& names) {
   std::string nearest;
   int most = -1;

@@ -29,6 +29,7 @@ struct MarkerTracks {
 /// Index of the marker of that name, or -1. Case matters.
 int FindMarker(const MarkerTracks& tracks, std::string_view name);
 
+/// Whether a marker was seen: its place is finite.
 inline bool Seen(const Eigen::Vector3d& p) { return p.allFinite(); }
 
 /// InvalidData where fewer than `least` markers are seen for longer than `longest_s`: the pose held
@@ -82,13 +83,14 @@ std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std
 /// Which joints can carry each marker of a trial.
 struct MarkerCarriers {
   std::vector<int> candidates;  ///< For a marker of which the set does not say where it sits.
-  std::vector<int> known;       ///< Of each track; -1 where the set does not say.
+  std::vector<int> known;       ///< Joint of each track; -1 where the set does not say.
 
   std::vector<int> Of(std::size_t track) const {
     return known[track] < 0 ? candidates : std::vector<int>{known[track]};
   }
 };
 
+/// Joints that can carry each marker, by the set and the landmarks.
 MarkerCarriers FindCarriers(const body::Skeleton& skeleton, const body::Landmarks& landmarks,
                             const MarkerTracks& tracks, const MarkerSet& set);
 

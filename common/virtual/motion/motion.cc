@@ -25,11 +25,11 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// What the header block and the parameters say about the data.
+/// Layout of the data by the header block and the parameters.
 struct Layout {
   std::size_t points = 0, frames = 0;
   std::size_t analog_channels = 0, analog_per_frame = 0;
-  double scale = 0;  ///< Of integers; floats need none.
+  double scale = 0;  ///< Scale of integers; floats need none.
   bool floats = false;
   std::size_t data_begin = 0;
   double rate_hz = 0;
@@ -319,7 +319,7 @@ Result<GroundForces> ToGroundForces(const C3d& c3d, const std::string& file) {
 namespace {
 
 constexpr std::size_t kLongestText = 127;
-constexpr std::size_t kLongestList = 255;  // Of one dimension of a parameter.
+constexpr std::size_t kLongestList = 255;  // Length of one dimension of a parameter.
 constexpr std::size_t kMostInAWord = 0xFFFF;
 constexpr double kMillimetres = 1000;  // Millimetres.
 constexpr double kScale = -1;          // Negative: the data are floats.

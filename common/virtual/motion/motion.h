@@ -27,6 +27,7 @@ struct C3dPlate {
   std::vector<int> channels;                           ///< Into `analog`, from 0.
 };
 
+/// Contents of a C3D file: markers, analog channels and force plates.
 struct C3d {
   MarkerTracks points;  ///< In the file's axes. Labels that are missing are "point 1", ...
   double analog_rate_hz = 0;

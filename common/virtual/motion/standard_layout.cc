@@ -18,7 +18,7 @@ namespace {
 using body::Landmark;
 using Eigen::Vector3d;
 
-constexpr Eigen::Index kEnoughFrames = 2000;  // Of a long motion, evenly spread.
+constexpr Eigen::Index kEnoughFrames = 2000;  // Frames of a long motion, evenly spread.
 
 Eigen::Index Stride(const Motion& motion) {
   return std::max<Eigen::Index>(1, motion.frames() / kEnoughFrames);
@@ -34,7 +34,7 @@ class Places {
   const Vector3d& At(Landmark landmark) const { return at_.p_WJ[Index(landmark)]; }
   const Eigen::Matrix3d& Turn(Landmark landmark) const { return at_.R_WJ[Index(landmark)]; }
   Vector3d Line(Landmark from, Landmark to) const { return (At(to) - At(from)).normalized(); }
-  /// Of the line from the right hip to the left one.
+  /// Direction of the line from the right hip to the left one.
   Vector3d Left() const { return Line(Landmark::kRightHip, Landmark::kLeftHip); }
   Vector3d Up() const {
     const Vector3d hips = 0.5 * (At(Landmark::kLeftHip) + At(Landmark::kRightHip));

@@ -10,7 +10,7 @@
 #include "common/body/landmarks.h"
 #include "common/virtual/motion/motion.h"
 
-/// What the movement itself says of a skeleton whose frames mean nothing to us.
+/// Skeletons whose frames have no known meaning, understood from the movement itself.
 namespace footing::motion {
 
 /// A pose in which the person stands upright and looks along x: the T-pose about the skeleton's own
@@ -33,7 +33,7 @@ HingeAxes FindHingeAxes(const Motion& motion, const body::Landmarks& landmarks,
 struct StandardMotion {
   Motion motion;
   double height_m = 0;  ///< Estimated from the lengths.
-  double rms_m = 0;     ///< Of the markers below.
+  double rms_m = 0;     ///< Distance of the markers below, RMS.
 };
 
 /// True when the motion's degrees of freedom are the standard person's, by number and name.

@@ -323,7 +323,7 @@ Result<Motion> ParseAmc(std::string_view text, const std::string& file, const As
 namespace {
 
 constexpr double kMissingTrcValue = std::numeric_limits<double>::quiet_NaN();
-constexpr int kPlaceDecimals = 5;  // Of millimetres.
+constexpr int kPlaceDecimals = 5;  // Decimals of millimetres.
 constexpr int kTimeDecimals = 6;
 
 /// Fields between tabs that are not empty.

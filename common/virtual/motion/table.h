@@ -15,6 +15,7 @@
 /// MOT and STO: OpenSim's tables of numbers over time, and the ground forces in them.
 namespace footing::motion {
 
+/// An OpenSim table (.mot, .sto): named columns over time.
 struct Table {
   std::string name;
   bool in_degrees = false;
@@ -32,7 +33,7 @@ Result<Table> ParseTable(std::string_view text, const std::string& file);
 /// Writes one; numbers have as many digits as they need to be read again the same.
 std::string WriteTable(const Table& table);
 
-/// What one plate measured: the force on the person, where it acts, and the free moment there.
+/// Measurements of one plate: the force on the person, where it acts, and the free moment there.
 struct PlateForces {
   std::string name;           ///< The part of the columns' names that they share.
   Eigen::Matrix3Xd force_W;   ///< N, a column a time.
@@ -40,6 +41,7 @@ struct PlateForces {
   Eigen::Matrix3Xd moment_W;  ///< About cop_W, N m.
 };
 
+/// Forces of all plates at equal steps of time.
 struct GroundForces {
   double rate_hz = 0;
   double start_s = 0;
@@ -51,6 +53,7 @@ struct GroundForces {
 /// 20 m are taken for millimetres, as some files have them. Times must be at equal steps.
 Result<GroundForces> ToGroundForces(const Table& table, const std::string& file);
 
+/// Whether a file's rate makes sense, Hz.
 inline bool IsRate(double rate_hz) { return rate_hz >= 0.1 && rate_hz <= 100'000; }
 
 /// Rate of a step that a file gives with few digits: 0.0083333 s is 120 Hz, not 120.0005.

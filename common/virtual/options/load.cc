@@ -21,7 +21,7 @@ namespace footing::motion_files {
 namespace {
 
 constexpr std::size_t kMostBytes = 512u << 20;
-constexpr double kFastestMps = 100;  // Of a root, ten times that of a sprinter.
+constexpr double kFastestMps = 100;  // Speed of a root, ten times that of a sprinter.
 
 Result<std::string> Read(const std::string& path) { return config::ReadTextFile(path, kMostBytes); }
 

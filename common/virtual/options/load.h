@@ -12,13 +12,14 @@
 /// Motion files by their paths: the edge around the pure readers of common/virtual/motion.
 namespace footing::motion_files {
 
+/// Facts that a motion file does not state.
 struct LoadOptions {
   std::string skeleton = {};  ///< ASF file of an AMC motion.
   double amc_rate_hz = 120;   ///< AMC files do not say.
   /// Length of a BVH file's unit, which the file does not say; without it the first of centimetres,
   /// metres, millimetres and inches that makes a person of 0.9 to 2.3 m.
   std::optional<double> bvh_unit_m = {};
-  std::string marker_set = {};  ///< Of TRC and C3D; empty: the one that is there.
+  std::string marker_set = {};  ///< Marker set of TRC and C3D; empty: the one that is there.
   std::string still = {};       ///< TRC or C3D of the same person standing still; may be empty.
   body::Sex sex = body::Sex::kMean;
 };

@@ -12,7 +12,7 @@
 /// outlive the parsing.
 namespace footing::sensor_options {
 
-/// What a motion file does not say: --skeleton of an AMC, --bvh-unit-m of a BVH.
+/// Facts that a motion file does not state: --skeleton of an AMC, --bvh-unit-m of a BVH.
 void AddMotionFile(CLI::App& command, std::string& skeleton, std::optional<double>& bvh_unit_m);
 /// --cell-noise-kg and --gain-error, of any cell.
 void AddCellErrors(CLI::App& command, double& noise_kg, double& gain_spread);

@@ -59,7 +59,7 @@ namespace {
 
 using stream::Gait;
 
-/// Of what was off, the share that people correct from one try to the next (van Beers 2009: 0.2 to
+/// Share of an error that people correct from one try to the next (van Beers 2009: 0.2 to
 /// 0.6 of a visible error).
 constexpr double kLearned = 0.3;
 /// How late who has seen no leap at all believes to have been.
@@ -136,7 +136,7 @@ namespace {
 using stream::Gait;
 
 constexpr double kRememberedS = 2;
-/// Of the turning rate there is, what a user plans with.
+/// Share of the turning rate there is that a user plans with.
 constexpr double kTurnShare = 0.85;
 /// Steering by tilt begins and ends at these errors of direction.
 constexpr double kSteerAboveRad = 0.07;

@@ -13,8 +13,8 @@
 
 namespace footing::users {
 
-/// What a user has learned of an interface from the demonstration and in five minutes' practice:
-/// what it can command, and how long that takes.
+/// Ability of a user after the demonstration of an interface and five minutes' practice: what it
+/// can command, and how long that takes.
 struct Ability {
   double walk_min_mps = 0.3, walk_max_mps = 1.3;
   double run_min_mps = 1.6, run_max_mps = 4;
@@ -29,7 +29,7 @@ struct Ability {
   double walk_jump_s = 0.85;
 };
 
-/// Of a command given at once, without a body.
+/// Ability to command at once, without a body.
 Ability DirectAbility();
 /// The speeds are those of the demonstration (docs/interfaces.md), the delays what five minutes of
 /// practice teach. `turn_by` is of the leg interface.
@@ -49,7 +49,7 @@ class JumpTiming {
   double LeadS(stream::Gait from) const;
   /// The motion of a jump over the pit whose middle is at `middle_m` along the track begins.
   void Begin(double time_s, stream::Gait from, double speed_mps, double middle_m);
-  /// What the character does, as the user sees it: its gait, its place along the track, and the
+  /// Takes the character as the user sees it: its gait, its place along the track, and the
   /// height of its COM.
   void See(double time_s, stream::Gait gait, double along_m, double com_m);
   /// The pit was not crossed; `gait` is what the character ran. Who had not begun, or had seen no
@@ -67,7 +67,7 @@ class JumpTiming {
   noise::Random random_;
   double run_s_, walk_s_;
   double sd_s_;
-  double error_s_ = 0;   ///< Of the next moment.
+  double error_s_ = 0;   ///< Error of the next moment.
   double begun_s_ = -1;  ///< Negative: no jump under way, or it was learned from.
   bool tried_ = false;   ///< A jump over this pit was begun.
   bool from_run_ = false;
@@ -76,7 +76,7 @@ class JumpTiming {
   bool jumped_ = false;                      ///< The character was seen to jump,
   bool leapt_ = false;                       ///< and to come down from its first leap.
   double from_m_ = 0;                        ///< Height of the COM when it began to jump.
-  double highest_m_ = 0, highest_at_m_ = 0;  ///< Of the first leap, and where.
+  double highest_m_ = 0, highest_at_m_ = 0;  ///< Height of the first leap's top, and its place.
 };
 
 /// A user who drives along a track: sees the track 3 to 12 m ahead and the character as it was a
@@ -89,7 +89,7 @@ class Driver {
 
   /// The track on the screen; a new one is a new start.
   void SeeTrack(const stream::Track& track);
-  /// What the user now wants; call about every 10 ms, times must not decrease.
+  /// Present intention of the user; call about every 10 ms, times must not decrease.
   Intention Want(const Observation& seen);
 
   const Style& style() const { return style_; }
@@ -121,12 +121,12 @@ class Driver {
   std::deque<Wanted> wanted_;     ///< The same of the own turns.
   Intention intention_;
   std::uint64_t pit_falls_ = 0;  ///< Jump failures seen so far.
-  double now_s_ = 0;             ///< Of the newest sight.
+  double now_s_ = 0;             ///< Time of the newest sight.
   bool steering_ = false;
   double walked_s_ = -1e9;    ///< When walking was last begun.
   double jump_until_m_ = -1;  ///< Along the track; negative: not jumping.
   double gait_since_s_ = 0;   ///< Since when this gait is wanted.
-  double correction_ = 0;     ///< Of the effort, by the speed and the gait seen.
+  double correction_ = 0;     ///< Correction of the effort, by the speed and the gait seen.
 };
 
 }  // namespace footing::users

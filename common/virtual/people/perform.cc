@@ -16,13 +16,13 @@ namespace footing::choreography {
 namespace {
 
 constexpr int kRounds = 3;
-constexpr int kCentrings = 3;          // Of the root, a frame and round.
+constexpr int kCentrings = 3;          // Iterations for the root, a frame and round.
 constexpr double kKneeBentRad = 0.14;  // At least; a straight knee is stiff.
 constexpr double kFirstKneeRad = 0.3;
 constexpr double kReachSoftM = 0.004;  // How softly the longer leg pulls the hips down.
 constexpr double kSwayFadeS = 2;
 
-/// What a script asks of each frame.
+/// Targets of a script for each frame.
 struct Target {
   Values values;
   Eigen::Vector2d pressure_m;
@@ -172,7 +172,7 @@ using body::Landmark;
 
 // Shares of a movement of the trunk that the hips make; the rest is the back's.
 constexpr double kHipsBow = 0.45, kHipsTwist = 0.35, kHipsBend = 0.2;
-constexpr double kToesDownRadPerM = 1.2;  // Of a lifted foot.
+constexpr double kToesDownRadPerM = 1.2;  // Pitch of a lifted foot over its height.
 // From where a standing foot carries to as far as a leaning body goes, m: well inside the sole.
 constexpr double kToFrontM = 0.08, kToHeelM = 0.055;
 

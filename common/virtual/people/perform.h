@@ -15,6 +15,7 @@ namespace footing::choreography {
 /// The standard person of this height, for whom scripts are made.
 Result<body::Body> Performer(double height_m, double mass_kg);
 
+/// A script performed: the motion, and its distance from the script.
 struct Performance {
   motion::Motion motion;
   double pressure_error_m = 0;  ///< Root mean square, of the centre of pressure from the script's.
@@ -30,7 +31,8 @@ struct Performance {
 Performance Perform(const Script& script, const body::Body& body, double rate_hz = 100,
                     const std::function<void(double done)>& progress = nullptr);
 
-/// What the channels make of the standard person (standard_person.cc): its joints by their names.
+/// Pose of the standard person (standard_person.cc) for values of the channels: its joints by their
+/// names.
 class Posture {
  public:
   /// `body` must outlive it, and be a StandardPerson or a CMU skeleton.

@@ -76,7 +76,7 @@ class LimbBody {
   stream::TurnSource turn_by_;
   Style style_;
   Rhythm rhythm_;
-  Follower turn_;  ///< Of hands, head or trunk, to the right: the left side up. Of feet: a share.
+  Follower turn_;  ///< Turn of hands, head or trunk, to the right: the left side up. Feet: a share.
   Follower bend_;  ///< Elbow.
   Follower hop_;   ///< 0 stepping to 1 hopping with both legs.
   Follower run_;   ///< 0 walking to 1 running.
@@ -104,7 +104,7 @@ class BoardBody {
   Style style_;
   noise::Random random_;
   Rhythm rhythm_;
-  Follower lean_m_;  ///< Of the COM, to the right.
+  Follower lean_m_;  ///< Shift of the COM, to the right.
   Follower run_;     ///< 0 stepping to 1 running.
   Follower toes_m_;  ///< COP, forward of where it is in standing.
   double sway_m_ = 0;
@@ -130,7 +130,7 @@ class Person {
   /// The gait that the motion now under way is meant to command: a jump's gesture is over before
   /// the user's wish for a jump is.
   stream::Gait gesture() const;
-  /// Of one limb, at its tempo now; 0: no limb swings.
+  /// Frequency of one limb, at its tempo now; 0: no limb swings.
   double limb_hz() const;
 
  private:

@@ -203,7 +203,7 @@ Result<Script> ParseScript(const std::string& text, const std::string& origin) {
 namespace {
 
 constexpr double kStepLiftM = 0.05;
-constexpr double kStepMovesFrom = 0.25;  // Of a step's time: before and after it goes up and down.
+constexpr double kStepMovesFrom = 0.25;  // Share of a step's time for lifting, and for lowering.
 
 /// From 0 to 1 with velocity and acceleration 0 at both ends.
 double Blend(double u) {

@@ -12,7 +12,7 @@
 /// feet that stay where they stand and a centre of pressure that stays where the script puts it.
 namespace footing::choreography {
 
-/// What a script sets. All are 0 in the T-pose. Of each pair the left one comes first.
+/// Channels that a script sets. All are 0 in the T-pose. Of each pair the left one comes first.
 enum class Channel {
   kCrouch,     ///< m, hips below standing.
   kBow,        ///< rad, trunk to the front.
@@ -53,6 +53,7 @@ struct Key {
   Values values{};
 };
 
+/// Key poses in their order.
 struct Script {
   std::vector<Key> keys;
   double sway_m = 0;  ///< Root mean square of the pressure's wandering, each way.

@@ -18,13 +18,13 @@
 
 namespace footing::users {
 
-/// What one Wiimote on the body feels, in its frame S, m/s2.
+/// True specific force on one Wiimote on the body, in its frame S, m/s2.
 struct FeltRemote {
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
 };
 
-/// What all devices of an interface feel; those that it does not have stay as they are here.
+/// True inputs of all devices of an interface; those that it does not have stay as they are here.
 struct Felt {
   std::array<FeltRemote, 3> remotes;
   int remote_count = 0;
@@ -37,11 +37,11 @@ struct Felt {
 
 /// Synthetic users: what they see, what they want, and how their bodies do it. Frames: world W
 /// (x forward, y left, z up), sensor S of a Wiimote (x left, y front, z down). SI units.
-/// What makes a user an individual.
+/// Traits that make a user an individual.
 struct Style {
   double reaction_s = 0.3;     ///< From the picture to a decision; 0.2 to 0.4.
   double favourite_mps = 2.6;  ///< Speed of running; 2.2 to 3.
-  double amplitude = 1;        ///< Of every motion, as a share of an ordinary one; 0.85 to 1.2.
+  double amplitude = 1;        ///< Size of motions, as a share of ordinary ones; 0.85 to 1.2.
   double asymmetry = 0;        ///< Left larger, right smaller by this share; -0.1 to 0.1.
   double tempo = 1;            ///< Frequencies as a share of ordinary ones; 0.94 to 1.06.
   double tempo_drift = 0.03;   ///< Standard deviation of its slow change, as a share.
@@ -114,7 +114,7 @@ class Rhythm {
   Follower activity_;
 };
 
-/// What a person in front of the screen sees of the character and the trial, as published.
+/// Character and trial as a person in front of the screen sees them, as published.
 struct Observation {
   double time_s = 0;
   Eigen::Vector2d p_W_m = Eigen::Vector2d::Zero();
@@ -127,16 +127,16 @@ struct Observation {
   stream::TrialProgress trial;
 };
 
-/// What the user wants of the character.
+/// Intention of the user for the character.
 struct Intention {
   stream::Gait gait = stream::Gait::kStep;
   double speed_mps = 0;
-  double height_m = 0;  ///< Of a jump.
+  double height_m = 0;  ///< Height of a jump.
   double turn_rad = 0;  ///< A step, left positive.
   /// How fast to move, for its gait: 0 as slowly as is comfortable, 1 as fast. From the speed
   /// wanted and, since the person sees the result, the speed seen.
   double effort = 0;
-  double size = 1;  ///< Of the motion, as a share of the user's own.
+  double size = 1;  ///< Size of the motion, as a share of the user's own.
 };
 
 /// A thumb on the stick of a Nunchuk, and the other on button A of the Wiimote. A plain value.
@@ -160,7 +160,7 @@ class StickBody {
   stream::Gait gesture_ = stream::Gait::kStep;
 };
 
-/// What a user does for a while.
+/// Intention of a user for a while.
 struct Act {
   Intention wanted;
   double duration_s = 0;
@@ -171,8 +171,7 @@ struct Act {
 /// Empty for a joystick, on which style has no effect.
 std::vector<Act> RangeActs(stream::UserInterface interface,
                            stream::TurnSource turn_by = stream::TurnSource::kHead);
-/// What is wanted at this time, s, behind the last act from the first one again. `acts` must not be
-/// empty.
+/// Intention at this time, s; the first act follows the last one. `acts` must not be empty.
 const Intention& WantedAt(const std::vector<Act>& acts, double time_s);
 
 /// How a user is to hold the remotes, in place of what the style draws.

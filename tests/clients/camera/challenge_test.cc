@@ -33,7 +33,7 @@ bool IsLeftOut(const Challenge& challenge, const sphere::Estimate& seen) {
   return false;
 }
 
-/// What the finder sees of a sphere and a lamp, the lamp first.
+/// Estimates of the finder for a sphere and a lamp, the lamp first.
 struct Picture {
   std::optional<sphere::Estimate> lamp = {}, sphere = {};
   bool follows = true;  ///< The sphere's light does what it should.
@@ -156,7 +156,7 @@ class WorldWithALamp {
     moves_ = {move};
   }
 
-  /// What is sent of each frame.
+  /// Estimates that are sent for each frame.
   std::vector<std::optional<sphere::Estimate>> Run(bool challenges, int frames) {
     constexpr std::int64_t kSlowFrameNs = 120'000'000, kLateNs = 250'000'000;
     std::int64_t now_ns = 0, follows_ns = 0;

@@ -226,7 +226,7 @@ TEST_F(PreviewServerTest, AViewerThatReadsNothingMissesPicturesAndHoldsNobodyUp)
   // One picture of 230 kB waits in the program; the socket's buffer holds another, or part of it.
   const std::uint64_t until = shown_;
   TrackUntil([&] { return client.Read() && idle.Read() && NumberOf(idle.last) > until; });
-  EXPECT_LE(idle.messages, 6);  // Of those and perhaps two new ones.
+  EXPECT_LE(idle.messages, 6);  // Those and perhaps two new ones.
 }
 
 TEST_F(PreviewServerTest, AViewerThatReadsNothingForLongIsCutOff) {

@@ -226,7 +226,7 @@ TEST(Video, DatesAFrameToItsMiddle) {
   EXPECT_EQ(ExposedNs(buffer, camera, 0.004, 0), 100'020'000'000 - 9'750'000);
   buffer.flags |= V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
   EXPECT_EQ(ExposedNs(buffer, camera, 0.004, 0), 100'020'000'000 + 9'750'000);
-  buffer.flags = 0;  // Of another clock.
+  buffer.flags = 0;  // Timestamp of another clock.
   EXPECT_EQ(ExposedNs(buffer, camera, 0.004, 50'000'000), 50'000'000 - 9'750'000);
 }
 

@@ -16,7 +16,7 @@ Hand Inclined(double roll_deg, double pitch_deg, bool a = false, bool b = false)
   return {true, DegreesToRadians(roll_deg), DegreesToRadians(pitch_deg), a, b};
 }
 
-/// What footing-sim is asked for.
+/// Segment that footing-sim is asked for.
 terrain::NewSegment ToSegment(const Piece& piece) {
   return {piece.length_m, piece.slope_rad, piece.curve_rad, piece.step_m, piece.pit};
 }

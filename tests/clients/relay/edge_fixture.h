@@ -23,12 +23,12 @@ namespace footing::relay {
 
 constexpr std::int64_t kTickNs = 10'000'000;  // 100 Hz.
 
-/// What one viewer of the edge got.
+/// Messages that one viewer of the edge got.
 struct Viewed {
   std::vector<v1::Welcome> welcomes;
   std::vector<v1::Tick> ticks, snapshots;
   std::vector<v1::Gap> gaps;
-  std::vector<std::string> lines;  ///< Of the link.
+  std::vector<std::string> lines;  ///< Lines of the link.
 
   /// The newest state that a tick or a snapshot brought; empty: none.
   std::string state;
@@ -157,7 +157,7 @@ class EdgeTest : private timer::SimulatedTime, public transport::IoFixture {
   v1::Welcome welcome_;
   v1::Tick snapshot_;
   std::int64_t ahead_ns_ = 3'600'000'000'000;  ///< The server's clock, of ours.
-  std::int64_t trip_ns_ = 0;                   ///< Of the answer to a ping, there and back.
+  std::int64_t trip_ns_ = 0;                   ///< Trip of the answer to a ping, there and back.
   int answers_ = 1 << 20;                      ///< To requests for a snapshot, still to be given.
   int asked_ = 0;                              ///< How often a snapshot was requested.
   std::unique_ptr<Edge> edge_;

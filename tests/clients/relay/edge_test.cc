@@ -106,7 +106,7 @@ TEST_F(EdgeTest, ASnapshotThatIsOlderThanATickTakesNoStateBack) {
 TEST_F(EdgeTest, ASnapshotThatIsOlderThanTheFirstTakesNoStateBack) {
   ASSERT_TRUE(Serve(500, "new"));
   RunFor(1);
-  Stand(400, "old");  // Of another publisher, which is behind.
+  Stand(400, "old");  // From another publisher, which is behind.
   Deliver(TickOf(502));
   ASSERT_TRUE(RunUntil([&] { return asked_ >= 2; }));
   Settle();

@@ -9,7 +9,7 @@
 
 #include "tests/common/net/io_fixture.h"
 
-/// What a real server does only by chance, or only when it is broken. What it does otherwise is in
+/// Cases that a real server shows only by chance, or only when it is broken. The others are in
 /// tests/scenarios/relay.py.
 namespace footing::relay {
 namespace {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxPayload = 1000;
 
-/// What a parser made of bytes, a line each.
+/// Output of a parser, a line each.
 struct Seen {
   std::vector<std::string> lines;
   Handlers handlers() {

@@ -15,7 +15,7 @@ namespace {
 constexpr Dialect kWritten[] = {Dialect::kSensebloom, Dialect::kQuartz, Dialect::kZillode,
                                 Dialect::kKinectSdk2, Dialect::kFooting};
 
-/// What the dialect can say of a confidence.
+/// Confidence as the dialect can state it.
 double Said(Dialect dialect, double confidence) {
   const double least = dialect == Dialect::kSensebloom || dialect == Dialect::kQuartz ? 0.5 : 0.1;
   if (confidence < least && dialect != Dialect::kFooting) return 0;
@@ -171,7 +171,7 @@ TEST(Decoder, TakesATimeOf0ForNone) {
     std::vector<Decoded> complete;
     for (std::int64_t i = 0; i < 3; ++i) {
       std::vector<std::string> packets = Encode(dialect, {}, whole);
-      // Of the time tag, the last byte: 8 of "#bundle" and 8 of the tag.
+      // Clears the last byte of the time tag: 8 of "#bundle" and 8 of the tag.
       if (dialect == Dialect::kFooting && i == 1) packets[0][15] = 0;
       Send(decoder, packets, i * 33'000'000, complete);
     }

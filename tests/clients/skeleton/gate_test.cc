@@ -64,7 +64,7 @@ TEST(PersonGate, ReportsSwappedSidesAndAPersonUpsideDown) {
   // The picture is mirrored and the names are not.
   const auto mirror = [](Skeleton& skeleton) { skeleton = SwappedSides(MirrorImage(skeleton)); };
   EXPECT_EQ(Play(picture, 60, mirror).fault, Fault::kSwapped);
-  // What the advice names is the remedy, while a mirror image of both leaves the fault.
+  // The remedy that the advice names helps, while a mirror image of both leaves the fault.
   EXPECT_NE(Advice(Fault::kSwapped).find("--swap-sides"), std::string::npos);
   EXPECT_EQ(Play(right, 60,
                  [](Skeleton& skeleton) {

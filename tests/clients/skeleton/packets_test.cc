@@ -11,7 +11,7 @@
 namespace footing::skeleton {
 namespace {
 
-/// What senders of every dialect send, of which the packets below are damaged copies.
+/// Packets of senders of every dialect, of which the packets below are damaged copies.
 std::vector<std::string> Sound() {
   std::vector<std::string> packets;
   Skeleton person = Standing();

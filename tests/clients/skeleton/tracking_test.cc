@@ -93,7 +93,7 @@ TEST(Observation, SaysWhatIsAbsentInferredAndTooFarOff) {
   EXPECT_EQ(frame.points[Index(Joint::kTorso)].covariance_m2, Eigen::Vector3d(1e-4, 2e-4, 3e-4));
 }
 
-/// What a tracker makes of a clip that is sent in a dialect.
+/// Observations of a tracker for a clip that is sent in a dialect.
 std::vector<Observation> Track(Tracker& tracker, const std::vector<ClipFrame>& clip,
                                Dialect dialect, const DialectOptions& options = {}) {
   std::vector<Observation> observations;

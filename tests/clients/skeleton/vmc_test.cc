@@ -126,7 +126,7 @@ TEST(Vmc, CostsOnlyTheHandWhoseNumbersAreWrong) {
     EXPECT_EQ(play.decoder.counts().rejected, 20u);
     EXPECT_EQ(play.decoder.NoSkeleton(), "");
   }
-  // What hangs on a bone goes with it.
+  // Bones that hang on a bone go with it.
   const VmcPlay elbow = PlayVmc([](std::string& name, std::vector<osc::Argument>& of) {
     if (name == "RightLowerArm") of[7] = 0.f;
   });

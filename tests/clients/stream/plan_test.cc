@@ -10,7 +10,7 @@
 namespace footing::stream_client {
 namespace {
 
-/// What a grip is for: "+slope", "-curve", ...; empty for level ground and while it changes over.
+/// Purpose of a grip: "+slope", "-curve", ...; empty for level ground and while it changes over.
 std::string KindOf(const BuilderGrip& grip) {
   const double up = grip.pitch_rad, right = grip.roll_rad;
   const auto sign = [](double value) { return value > 0 ? "+" : "-"; };

@@ -159,7 +159,7 @@ TEST_F(Replay, ADeviceThatComesLaterAndIsLostAttachesAndDetachesThen) {
     v1::Tick one = tick;
     auto& reports = *one.mutable_raw()->mutable_reports();
     const double time_s = NanosecondsToSeconds(one.host_ns() - kStartNs);
-    // Of device 1 only what came between 2 s and 5 s.
+    // Only reports between 2 s and 5 s remain of device 1.
     for (int i = reports.size(); i-- > 0;) {
       if (reports[i].device() == 1 && (time_s < 2 || time_s > 5)) reports.DeleteSubrange(i, 1);
     }

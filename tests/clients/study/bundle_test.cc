@@ -130,7 +130,7 @@ TEST(StudyTables, DescribeEveryColumnOfTrials) {
                                 "heading_oscillation_rad\tanticipation_s\t"));
   // The first failure was undone: the one at 12.5 s is the first that counts.
   EXPECT_THAT(trials.tsv, HasSubstr("finished\tyes\t61.500\t0.000\t12.500\tn/a\tn/a\tstem\t"));
-  EXPECT_THAT(trials.tsv, testing::EndsWith("\t0\t1\t0\t0\t0\n"));  // Of five kinds: a curve.
+  EXPECT_THAT(trials.tsv, testing::EndsWith("\t0\t1\t0\t0\t0\n"));  // Five kinds: a curve.
 }
 
 }  // namespace

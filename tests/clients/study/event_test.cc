@@ -39,7 +39,7 @@ TEST(JournalEvent, ReadsBackAsItWasWritten) {
     EXPECT_EQ(read->Text("text"), "line\nbreak \"q\" ü");
     EXPECT_EQ(read->Number("value"), 2.5);
     EXPECT_TRUE(read->Flag("f"));
-    EXPECT_EQ(read->Text("value"), "");  // Of another type.
+    EXPECT_EQ(read->Text("value"), "");  // A number is not a text.
   }
 }
 

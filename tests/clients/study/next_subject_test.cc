@@ -90,7 +90,7 @@ TEST_F(Laboratory, TheNextSubjectIsShownTheCommandsWithinAFewSecondsOfTheLastOne
   ASSERT_NE(demonstrated, next.end());
   const double passed_s = NanosecondsToSeconds(demonstrated->wall_ns - first.back().wall_ns);
   EXPECT_GT(passed_s, 0);
-  EXPECT_LT(passed_s, 10);  // Of the minute; no wait for a lease or for a device to run out.
+  EXPECT_LT(passed_s, 10);  // Less than the minute; no wait for a lease or for a device to run out.
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ TEST(TrialRecords, KeepRatingsAtTheEndApart) {
   ASSERT_EQ(records.ratings.size(), 3u);
   EXPECT_FALSE(records.ratings[0].at_end);
   EXPECT_TRUE(records.ratings[1].at_end);
-  EXPECT_TRUE(records.ratings[2].at_end);  // Of no interface: of the whole study.
+  EXPECT_TRUE(records.ratings[2].at_end);  // Without interface: for the whole study.
 }
 
 TEST(TrialRecords, HaveOneRatingPerItemTheLastOne) {

@@ -21,7 +21,7 @@ using stream::UserInterface;
 using testing::HasSubstr;
 using users::Act;
 
-constexpr double kMostMps2 = 33;  // Of a Wiimote: a little over 3 g.
+constexpr double kMostMps2 = 33;  // Range of a Wiimote: a little over 3 g.
 
 std::vector<Act> Motions(UserInterface interface = UserInterface::kWrist) {
   return users::RangeActs(interface);
@@ -74,7 +74,7 @@ struct True {
   UserInterface interface;
   double slow_hz, fast_hz;
   double turn_deg;
-  double low_share;  ///< Of the acceleration of half a swing; a hop's is mostly its landing.
+  double low_share;  ///< Share in the acceleration of half a swing; a hop's is mostly its landing.
 };
 constexpr True kWrist{UserInterface::kWrist, 0.8, 3.8, 32, 0.75};
 constexpr True kLeg{UserInterface::kLeg, 0.75, 3.0, 23, 0.8};

@@ -39,7 +39,7 @@ TEST(StudyAnalysis, LeavesOutWhoHasWithdrawnAndPairsOnlyWhatIsComplete) {
   const Analysis analysis = Analyze(Two(), people);
   EXPECT_EQ(analysis.json["withdrawn"], 1);
   const auto& completion = Find(analysis, "test_time_to_completion_s");
-  EXPECT_EQ(completion["groups"][0]["n"], 2);  // Of P2 and P3; P1 did not arrive.
+  EXPECT_EQ(completion["groups"][0]["n"], 2);  // P2 and P3; P1 did not arrive.
   EXPECT_EQ(completion["groups"][1]["n"], 3);
   EXPECT_EQ(completion["participants"], 3);
   EXPECT_EQ(completion["paired_participants"], 2);
@@ -213,7 +213,7 @@ TEST(Latency, IsByStageAndWithoutTheWaitForContact) {
   ASSERT_EQ(analysis.latency.size(), 7u);
   EXPECT_EQ(analysis.latency[3].stage, "frame");
   EXPECT_EQ(analysis.latency[3].responses, 100u);
-  EXPECT_DOUBLE_EQ(analysis.latency[3].p95_ms, 1 + 0.95 * 99);  // Of 1 to 100.
+  EXPECT_DOUBLE_EQ(analysis.latency[3].p95_ms, 1 + 0.95 * 99);  // For 1 to 100.
   EXPECT_EQ(analysis.latency[4].stage, kWithoutContact);
   EXPECT_EQ(analysis.latency[4].p50_ms, 55.5);  // 50.5, the decoding and the command.
   EXPECT_EQ(analysis.latency[5].stage, kWithoutWindow);
@@ -269,7 +269,7 @@ TEST(StudyAnalysis, ComparesTheRatingsAtTheEnd) {
 }
 
 TEST(ValuesCsv, HasTheBoxOfEachInterface) {
-  // Of 60 to 64 s.
+  // Quartiles of 60 to 64 s.
   const std::string csv = ValuesCsv(Analyze(Two(), People(5)));
   EXPECT_THAT(csv, HasSubstr("test_time_to_completion_s,lower_quartile,,joystick,61\n"
                              "test_time_to_completion_s,median,,joystick,62\n"

@@ -47,7 +47,7 @@ class ServerLinkTest : public ::testing::Test {
     return console_.RunUntil(condition, kWithinS) == Waited::kDone;
   }
 
-  /// What footingd answers to another session.
+  /// Answer of footingd to another session.
   v1::CommandResult Tare() {
     v1::Command command;
     command.mutable_tare()->set_serial("a board");

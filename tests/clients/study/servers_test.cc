@@ -103,7 +103,7 @@ class ServersTest : public ::testing::Test {
     return result;
   }
 
-  /// What the experimenter reads while the study changes over to the interface wrist.
+  /// Text that the experimenter reads while the study changes over to the interface wrist.
   std::string UseWrist() {
     auto servers =
         Servers::Open(console_, {sensor_address_, simulation_address_, "the test"}, active_);

@@ -221,7 +221,7 @@ TEST(Choice, IsTheNameOrTheNumberOfOneOfThem) {
   const auto read = screen::ParseShown(screen::ToText(shown));
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(*read, shown);
-  // Of a session that knows of no choices.
+  // From a session that knows of no choices.
   const auto older = screen::ParseShown(
       R"({"number":1,"title":"","item":"good","scale":"","least":0,"greatest":0,"position":1,"count":1})");
   ASSERT_TRUE(older) << older.error().message;

@@ -84,7 +84,7 @@ TEST_F(CalibrationPictureTest, TheEndShowsTheCameraAndTheResiduals) {
   result.passed = true;
   result.note = "8 marks, residual 1.3 mm, direction to 0.12 degrees; stored in camera.json";
   const Image image = ShowCalibration(calibration, "calibration_end");
-  // Of the camera's lines; the panel has a few letters of that colour.
+  // Colour of the camera's lines; the panel has a few letters of that colour.
   const Is blue = [](int r, int g, int b) { return b > 150 && b > r + 60 && g > r + 20; };
   const double with_camera = ShareOf(image, blue, kScene);
   calibration.result->passed = false;

@@ -50,7 +50,7 @@ TEST(Camera, ARollTurnsThePictureClockwise) {
   camera.target_m = {5, 0, 1};
   camera.roll_rad = DegreesToRadians(20);
   const Eigen::Vector4f above = Clip(camera, {5, 0, 2});
-  // What stands upright leans to the right.
+  // An upright thing leans to the right.
   EXPECT_NEAR(std::atan2(above.x() * 16 / 9, above.y()), DegreesToRadians(20), 1e-4);
 }
 

@@ -32,7 +32,7 @@ TEST(HandSigns, AnObservationIsAnEllipsoidOfTwoDeviations) {
   EXPECT_NEAR(square(0, 0), 0.04 * 0.04, 1e-6);
   EXPECT_NEAR(square(2, 2), 0.01 * 0.01, 1e-6);
   EXPECT_NEAR(square(1, 1), 0.008 * 0.008, 1e-6);  // The least that can be seen.
-  // Of depth along a line of sight that is turned: the long axis lies along it.
+  // Variance of depth along a line of sight that is turned: the long axis lies along it.
   stream::HandSample turned = Sample(stream::DeviceRole::kLeftHand, 1);
   turned.sd_m = {0.02, 0.02, 0.001};
   turned.covariance_m2.x() = 0.0004 * 0.99;
@@ -74,7 +74,7 @@ TEST(HandSigns, JointsHaveTheirOwnEllipsoidsAndSayWhatIsHidden) {
   take(stream::BodyJoint::kLeftKnee, 0.5, true);
   take(stream::BodyJoint::kRightFoot, 1, false);
   take(stream::BodyJoint::kRightFoot, 0, false);
-  TakeHand(Sample(stream::DeviceRole::kUnspecified, 1), kSeenNs, points);  // Of no body.
+  TakeHand(Sample(stream::DeviceRole::kUnspecified, 1), kSeenNs, points);  // A hand of no body.
   const BodySigns signs = SignsOf(points);
   EXPECT_EQ(signs.solid.balls.size(), 3u);
   ASSERT_EQ(signs.labels.size(), 2u);

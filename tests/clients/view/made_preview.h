@@ -6,8 +6,8 @@
 
 namespace footing::scene::made {
 
-/// What a camera of 640 x 480 sees: a room in dim blue, the left hand's sphere in magenta, seen;
-/// the right hand's being checked; a lamp that was refused.
+/// Picture of a camera of 640 x 480: surroundings in dim blue, the left hand's sphere in magenta,
+/// seen; the right hand's being checked; a lamp that was refused.
 inline CameraPreview Preview(std::int64_t exposed_ns) {
   preview::Picture picture;
   picture.number = 42;

@@ -110,7 +110,7 @@ v1::Event ResponseAt(double time_s) {
   return event;
 }
 
-/// What happens in the hundredth of a second of that number.
+/// Events in the hundredth of a second of that number.
 v1::Events EventsAt(int tick, bool trials) {
   const double time_s = 0.01 * tick;
   v1::Events events;

@@ -17,7 +17,7 @@ struct RecordingWish {
   bool trials = true;
 };
 
-/// Of the first tick.
+/// Time of the first tick.
 inline constexpr std::int64_t kFirstNs = 1'000'000'000'000;
 
 void WriteRecording(const std::string& path, const RecordingWish& wish);

@@ -70,7 +70,7 @@ TEST(Model, AHandHasOneStripAfterItsDeviceOrItsServerWasStartedAgain) {
   status.devices = {StatusOf(1, DeviceRole::kLeftHand), StatusOf(2, DeviceRole::kRightHand)};
   Apply(model, status);
   for (const std::uint32_t device : {1u, 2u}) Apply(model, SampleOf(device));
-  Update other = SampleOf(1);  // Of another server.
+  Update other = SampleOf(1);  // From another server.
   other.source = 1;
   Apply(model, other);
   EXPECT_EQ(model.strips.devices.size(), 3u);

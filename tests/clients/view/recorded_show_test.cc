@@ -128,7 +128,7 @@ void ExpectSeekEqualsPlay(RecordedShow& played, RecordedShow& sought, double at_
 
 TEST_F(RecordedShowTest, SeekingShowsWhatPlayingToThatTimeShows) {
   RecordedShow played = Open({}), sought = Reopen();
-  // Of these the seeks go ahead and back, into a gait and right behind falls.
+  // Among these are seeks ahead and back, into a gait and right behind falls.
   for (const double at_s : {45.0, 56.0, 58.123, 30.05, 21.5, 5.0, 0.0, 42.5}) {
     ExpectSeekEqualsPlay(played, sought, at_s);
   }

@@ -5,7 +5,7 @@
 #include "tests/clients/view/made_stream.h"
 #include "tests/clients/view/picture_fixture.h"
 
-// What the panel of strips shows.
+// The panel of strips, as it is drawn.
 namespace footing::render {
 namespace {
 

@@ -127,7 +127,7 @@ TEST(Translate, ABodyWithItsFeetComesThroughAndIsFinite) {
   body.set_mass_kg(std::numeric_limits<double>::quiet_NaN());
   body.add_feet()->set_load_n(300);
   body.add_feet()->mutable_variance_m2()->set_x(std::numeric_limits<double>::infinity());
-  body.add_feet();  // Of a newer server: a person has two.
+  body.add_feet();  // From a newer server: a person has two.
   body.add_hands_seen(true);
   const scene::CharacterPose pose = Translate(tick, 0, 0, 0).frame->characters.at(0);
   ASSERT_TRUE(pose.body.has_value());

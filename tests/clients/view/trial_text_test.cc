@@ -107,7 +107,7 @@ TEST(TrialText, InAStudyIsOfThePhaseAndTheAttemptThatItIsIn) {
     return ShownTrial(pose, study) != nullptr;
   };
   EXPECT_TRUE(shows("P07.wrist.straight1.2"));
-  // What practice and an earlier attempt have left goes on behind the prompt of this one.
+  // Progress of practice and of an earlier attempt goes on behind the prompt of this one.
   EXPECT_FALSE(shows("P07.wrist.practice"));
   EXPECT_FALSE(shows("P07.wrist.straight1.1"));
   EXPECT_FALSE(shows("P07.wrist.straight1.20"));

@@ -33,7 +33,7 @@ TEST(JsonText, AKeyThatOneObjectHasTwiceIsRefused) {
               "a.json has the key 'a' twice in one object; leave one of them out");
     EXPECT_FALSE(ParseOrderedJson(text, "a.json").ok());
   }
-  // Of different objects, one within the other.
+  // Keys of different objects, one within the other.
   const auto json =
       ParseOrderedJson("{\"b\": {\"a\": 1}, \"a\": [{\"a\": 2}, {\"a\": 3}]}", "a.json");
   ASSERT_TRUE(json.ok()) << json.error().message;

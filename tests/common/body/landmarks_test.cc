@@ -58,7 +58,7 @@ TEST(Landmarks, AreFoundUnderMotionBuildersNamesWithAnyPrefix) {
 struct Rig {
   const char* description;
   std::vector<std::string> trunk, left_leg, left_arm, right_leg, right_arm;
-  std::array<const char*, 4> wrist_toe_ankle_elbow;  ///< Of the left side; "" where there is none.
+  std::array<const char*, 4> wrist_toe_ankle_elbow;  ///< Left joints; "" where there is none.
 };
 
 Skeleton Hung(const Rig& rig) {

@@ -24,7 +24,7 @@ inline Eigen::Isometry3d LookingAtTheBoards(const Eigen::Vector3d& p_W_m) {
 
 inline const Eigen::Isometry3d kTrue = LookingAtTheBoards({2.1, 0.4, 1.3});
 
-/// Of a camera: 0.1 mm across the line of sight, 4 mm along it at 2 m.
+/// Covariance of a camera: 0.1 mm across the line of sight, 4 mm along it at 2 m.
 inline Eigen::Matrix3d CameraNoise(const Eigen::Vector3d& p_C_m) {
   const Eigen::Vector3d along = p_C_m.normalized();
   return 1e-8 * Eigen::Matrix3d::Identity() +

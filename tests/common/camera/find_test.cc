@@ -219,7 +219,7 @@ TEST(FinderHonesty, ANearSphereInACornerIsNotDrawnTowardsTheMiddle) {
 
 }  // namespace
 
-// What surrounds a sphere, and how it moves, on frames of a renderer that shares no code with the
+// Surroundings and motion of a sphere, on frames of a renderer that shares no code with the
 // finder.
 namespace {
 

@@ -86,7 +86,7 @@ TEST(FitLens, FindsTheTrueLens) {
   EXPECT_NEAR(fit->lens.cx_px, kTruth.cx_px, 1.5);
   EXPECT_NEAR(fit->lens.cy_px, kTruth.cy_px, 1.5);
   EXPECT_LT(std::abs(fit->lens.fx_px - kTruth.fx_px), 5 * fit->focal_sd_px + 0.3);
-  // What counts is where a ray appears: everywhere in the picture within half a pixel.
+  // The criterion is where a ray appears: everywhere in the picture within half a pixel.
   for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(20, 20), Eigen::Vector2d(620, 20),
                                        Eigen::Vector2d(320, 240), Eigen::Vector2d(620, 460)}) {
     const Eigen::Vector3d ray = camera::RayThrough(kTruth, pixel);

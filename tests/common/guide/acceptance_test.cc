@@ -33,11 +33,11 @@ struct Minute {
       Device(2, stream::DeviceKind::kBalanceBoard, stream::DeviceRole::kRightBoard),
       Device(3, stream::DeviceKind::kWiimote, stream::DeviceRole::kLeftHand),
       Device(4, stream::DeviceKind::kWiimote, stream::DeviceRole::kRightHand)};
-  double lean_m = 0.05;  ///< Of the left board, forward in truth.
+  double lean_m = 0.05;  ///< Lean on the left board, forward in truth.
   double empty_n = 2;
   double run_hz = 2.6;
   double jump_phase_rad = 0.1;
-  int motion_every = 1;  ///< Of the ticks.
+  int motion_every = 1;  ///< Motion at one of so many ticks.
   bool replug = true;
   bool unsettled_after_replug = false;  ///< Clock and jitter start again.
   double heavier_n = 0;                 ///< In the second half of standing.

@@ -107,7 +107,7 @@ class Holder {
     sample.covariance_m2 = {at.covariance_m2(0, 1), at.covariance_m2(0, 2), at.covariance_m2(1, 2)};
     if (mirrored) {
       sample.position_m.x() *= -1;
-      sample.covariance_m2.head<2>() *= -1;  // Of x with y and with z.
+      sample.covariance_m2.head<2>() *= -1;  // Covariances of x with y and with z.
     }
     sample.confidence = 0.9;
     sample.tracker_pose = stream::TrackerPose{};

@@ -69,7 +69,7 @@ class Person {
   double right_yaw_rad = kPi / 2;
   bool deaf = false;        ///< Never does anything.
   bool clumsy = false;      ///< Shakes both shins at once.
-  double mounting_deg = 4;  ///< What footingd finds.
+  double mounting_deg = 4;  ///< Angle that footingd finds.
   std::vector<stream::RigSetup> setup;
   std::set<std::string> prompts;
   std::set<std::pair<stream::Gesture, stream::DeviceRole>> gestures;

@@ -149,7 +149,7 @@ TEST_F(BadInputTest, NotANumberAsARateMeansEveryTick) {
 
 }  // namespace
 
-// What keeps one session from taking the loop's time from all others.
+// Limits that keep one session from taking the loop's time from all others.
 namespace {
 
 namespace asio = boost::asio;
@@ -558,7 +558,7 @@ TEST_F(FramedConnectionTest, AfterCloseNoHandlerIsCalled) {
 
 namespace {
 
-/// What comes out when `bytes` are fed in pieces of `piece` bytes.
+/// Frames that come out when `bytes` are fed in pieces of `piece` bytes.
 struct Outcome {
   std::vector<std::string> frames;
   bool ok = true;

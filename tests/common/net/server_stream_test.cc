@@ -147,7 +147,7 @@ TEST_F(ServerStreamTest, ASlowReaderWithLatestGetsTheNewestNext) {
     const auto sequences = slow->Sequences();
     return !sequences.empty() && sequences.back() == 500;
   }));
-  // What the kernel had taken before it was full, then the last.
+  // Ticks that the kernel had taken before it was full, then the last.
   const auto sequences = slow->Sequences();
   EXPECT_LT(sequences.size(), 200u);
   EXPECT_EQ(sequences[sequences.size() - 2], sequences.size() - 1);

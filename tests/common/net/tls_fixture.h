@@ -83,7 +83,7 @@ class TlsFixture : public ServerFixture {
     return socket;
   }
 
-  /// What the handshake of a foreign TLS client ends with.
+  /// Error at the end of the handshake of a foreign TLS client.
   error_code HandshakeOf(boost::asio::ssl::context::method method) {
     boost::asio::ssl::context context(method);
     boost::asio::ssl::stream<tcp::socket> stream(PlainPeer(Port()), context);

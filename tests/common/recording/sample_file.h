@@ -16,7 +16,7 @@ std::string SampleText(int k);
 /// one attachment and one metadata record before them.
 std::string SampleFile(int messages);
 
-/// What a walk shows.
+/// Contents that a walk shows.
 struct Seen {
   std::vector<std::string> messages;
   std::vector<std::uint64_t> log_times_ns;

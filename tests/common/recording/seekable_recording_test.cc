@@ -202,7 +202,7 @@ TEST_F(SeekableRecordingTest, WhatIsVisitedIsWhatPlays) {
   Create();
   for (std::uint32_t k = 0; k < 250; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
   auto recording = OpenedWith([](std::string& bytes, const auto& chunks) {
-    // Of one chunk a byte of the last message, of another one the message index.
+    // Damages the last message of one chunk by a byte, and the message index of another one.
     bytes[chunks[1].chunk_offset + chunks[1].chunk_length - 1] ^= 1;
     bytes[chunks[2].message_index_offsets.begin()->second] ^= 0x40;
   });

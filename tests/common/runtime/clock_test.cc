@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kWallNs = 1'700'000'000'000'000'000;
 
-/// What the threads did, in the order in which they did it: one works at a time.
+/// Steps of the threads, in the order in which they did them: one works at a time.
 struct Done {
   std::string who;
   std::int64_t after_ns = 0;

@@ -183,7 +183,7 @@ TEST(DataFile, WhatIsNotARegularFileIsRefusedAtOnce) {
   for (const auto& [path, kind] : {std::pair<std::string, std::string>{pipe, "a pipe"},
                                    {folder.Path("."), "a folder"},
                                    {"/dev/null", "a device"}}) {
-    const auto read = ReadTextFile(path);  // Of the pipe it would wait for a writer.
+    const auto read = ReadTextFile(path);  // On the pipe it would wait for a writer.
     ASSERT_FALSE(read) << path;
     EXPECT_EQ(read.error().message,
               "cannot open " + path + ": it is " + kind + ", not a regular file");

@@ -31,7 +31,7 @@ using testing::StartsWith;
 
 constexpr int kNoNamespaces = 77;  // Exit code of the child.
 
-/// What came to the journal's socket, one entry after the other, and what to standard error.
+/// Entries at the journal's socket, one after the other, and the text on standard error.
 struct Logged {
   std::string journal;
   std::string standard_error;

@@ -45,7 +45,7 @@ class NotifierTest : public testing::Test {
     close(socket_);
   }
 
-  /// What the manager has been told in the next 0.2 s.
+  /// Messages to the manager in the next 0.2 s.
   std::vector<std::string> RunAndRead() {
     io_.restart();
     io_.run_for(std::chrono::milliseconds(200));

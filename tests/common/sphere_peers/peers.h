@@ -9,7 +9,7 @@
 /// OpenCV; nothing here is shared with common/camera.
 namespace footing::sphere_peers {
 
-/// What both know of the camera and of the sphere.
+/// Common knowledge of both: the camera and the sphere.
 struct Setup {
   virtual_camera::Lens lens;  ///< Without distortion.
   Eigen::Vector3d colour_dn{170, 40, 150};

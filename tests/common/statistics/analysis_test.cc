@@ -472,7 +472,7 @@ TEST(MaxTail, OfOneTreatmentIsStudentsTailToTenDigitsFarOut) {
 }
 
 TEST(MaxTail, AtZeroIsTheChanceThatTheControlIsNotTheGreatest) {
-  // Of k + 1 equal groups each is the greatest equally often: 1 - 1 / (k + 1).
+  // Each of k + 1 equal groups is the greatest equally often: 1 - 1 / (k + 1).
   for (int k = 1; k <= 12; ++k) {
     for (const double degrees : {1.0, 7.0, kInfinity}) {
       const std::vector<double> loadings(static_cast<std::size_t>(k), kEqualGroups);

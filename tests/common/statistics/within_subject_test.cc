@@ -85,7 +85,7 @@ TEST(CliffsDelta, CountsPairs) {
 
 TEST(CliffsDelta, HasTheVarianceOfItsThreeParts) {
   // Control 0, 2; treatment 1, 3. Pairs +1 (1 > 0), -1 (1 < 2), +1, +1: delta 1/2.
-  // Of treatment: 0, 1, variance 1/2; of control: 1, 0, variance 1/2; of pairs: (4 - 4/4) / 1 = 3.
+  // Treatment: 0, 1, variance 1/2; control: 1, 0, variance 1/2; pairs: (4 - 4/4) / 1 = 3.
   // Together (1/2 + 1/2 + 3) / 4 = 1.
   const double z = 1;
   const EffectSize effect = CliffsDelta({0, 2}, {1, 3}, z);
@@ -209,7 +209,7 @@ TEST(Friedman, ExactPCountsOrders) {
   const Friedman test = FriedmanTest(blocks, Using(Method::kExact)).value();
   EXPECT_NEAR(test.chi_square, 6, 1e-12);
   EXPECT_NEAR(test.relabelled_p, 6.0 / 216, 1e-15);
-  EXPECT_NEAR(test.p, std::exp(-3), 1e-15);  // Of a chi-square with 2 degrees of freedom.
+  EXPECT_NEAR(test.p, std::exp(-3), 1e-15);  // P of a chi-square with 2 degrees of freedom.
 }
 
 TEST(BlockDunnett, AgreesWithinItsErrorWithR) {

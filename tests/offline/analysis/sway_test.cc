@@ -121,7 +121,7 @@ TEST(Resample, AConstantStaysWhateverTheTimes) {
 }
 
 TEST(Resample, WeighsASampleByTheTimeItStandsFor) {
-  // Of the window [0, 2] around 1, the sample at 0 stands for [0, 0.25], that at 0.5 for
+  // Within the window [0, 2] around 1, the sample at 0 stands for [0, 0.25], that at 0.5 for
   // [0.25, 1.25], that at 2 for [1.25, 2]: (0.25 * 0 + 1 * 4 + 0.75 * 8) / 2 = 5.
   const std::vector<CopSample> samples = {{0, 0, 0}, {0.5, 4, 0}, {2, 8, 0}};
   const std::vector<CopSample> even = Resample(samples, 1, 2);

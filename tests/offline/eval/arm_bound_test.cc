@@ -11,7 +11,7 @@ namespace footing::eval {
 namespace {
 
 constexpr double kRateHz = 20;
-constexpr int kBlocks = 12, kBlockFrames = 60;  // Of 3 s: what is alike is another moment.
+constexpr int kBlocks = 12, kBlockFrames = 60;  // Blocks of 3 s: what is alike is another moment.
 
 arms::ArmGeometry LeftArm() { return {body::MakeBody(body::StandardPerson(1.75), {}).value(), 0}; }
 

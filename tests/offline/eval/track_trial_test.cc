@@ -175,7 +175,7 @@ constexpr double kAmplitude = 1.3;
 /// Steps begin at once; a turn once the gait has settled.
 constexpr double kTurnsS = 3, kJumpsS = 7;
 
-/// What the interface commands a user who goes straight, then turns, then jumps.
+/// Commands of the interface for a user who goes straight, then turns, then jumps.
 struct Commanded {
   double jump_s = 0;   ///< Time of a jump before the user jumps.
   double other_s = 0;  ///< Time of another gait than the user's, from the begin of the turn on.
@@ -269,7 +269,7 @@ double WrongTempoS(std::uint64_t seed) {
   return wrong_s;
 }
 
-/// Of 120 users these are the ones of whom one hand showed half its tempo to the end.
+/// These, of 120 users, are the ones of whom one hand showed half its tempo to the end.
 TEST(UserTempo, OfArmsThatBeginToRunInATurnIsThatOfBothHands) {
   for (const std::uint64_t seed : {39, 75, 100}) EXPECT_LT(WrongTempoS(seed), 0.1) << seed;
 }

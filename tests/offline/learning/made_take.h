@@ -19,7 +19,7 @@ struct MadeTake {
 
 struct MadeTakeSettings {
   double offset_s = 1.5;  ///< The recording begins so long before the motion; it stands still then.
-  double drift = 0;       ///< Of the recording's clock.
+  double drift = 0;       ///< Drift of the recording's clock.
   double yaw_rad = 0.4;   ///< The cameras' floor is turned against the boards'.
   bool stomps = true;
   bool hands = true;

@@ -18,7 +18,7 @@ TEST(ArmRegression, FindsALinearMapAndTheCovarianceOfWhatIsLeft) {
   for (int i = 0; i < 3000; ++i) {
     arms::ArmFeatures::Values features;
     for (double& value : features) value = random.Normal();
-    const double shared = kNoise * random.Normal();  // Of the first two, so that they are alike.
+    const double shared = kNoise * random.Normal();  // Makes the first two alike.
     arms::Directions directions = map * features;
     for (Eigen::Index k = 0; k < directions.size(); ++k) {
       directions(k) += k < 2 ? shared : kNoise * random.Normal();

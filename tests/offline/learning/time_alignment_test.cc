@@ -124,9 +124,9 @@ ForceTrace Moved(const Mover& mover, double seconds) {
   return trace;
 }
 
-/// What two boards record of it: each reports every 8 to 14 ms at instants of its own, stamped by
-/// a clock that is estimated within 1.5 ms, with 0.1 kg of noise on a cell. recording = offset +
-/// (1 + drift) motion.
+/// Recording of the motion by two boards: each reports every 8 to 14 ms at instants of its own,
+/// stamped by a clock that is estimated within 1.5 ms, with 0.1 kg of noise on a cell:
+/// recording = offset + (1 + drift) motion.
 ForceTrace Recorded(const Mover& mover, double seconds, double offset_s, double drift,
                     std::optional<std::pair<double, double>> silence_s = std::nullopt) {
   RecordedSession session;

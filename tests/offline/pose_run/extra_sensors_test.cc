@@ -64,7 +64,7 @@ TEST(ExtraSensors, AHeadsErrorsAreThoseItReports) {
     mean_m += share * off_m;
     square_m2 += share * off_m.squaredNorm();
   }
-  // What stays is the cap's height and the T-pose's error, what changes the noise.
+  // The constant part is the cap's height and the T-pose's error, the changing part the noise.
   const HeadErrors errors;
   EXPECT_NEAR(mean_m.norm(), errors.above_m, 3 * std::hypot(errors.seat_sd_m, errors.t_pose_sd_m));
   EXPECT_NEAR(std::sqrt((square_m2 - mean_m.squaredNorm()) / 3), errors.noise_m, 0.001);

@@ -59,7 +59,7 @@ TEST(ForceCom, FindsTheConstantsOfTheIntegrationByTheCop) {
 
 TEST(ForceCom, TakesTheWeightFromTheForcesAndNoMassFromTheHeights) {
   Squatting squat = Squat(0);
-  squat.course.force_n *= 1.05;  // Of a heavier person, who moves the same way.
+  squat.course.force_n *= 1.05;  // Forces of a heavier person, who moves the same way.
   Eigen::VectorXd height_m = squat.com_m.row(2);
   EXPECT_LT(MostOffM(ComByForce(squat.course, height_m), squat.com_m), 2e-4);
   // Heights that are too low in the squats, as wrong segment masses have them, by 2 cm: a sixth of
@@ -122,8 +122,8 @@ motion::Motion Moved(motion::Motion clip, double yaw_rad, const Eigen::Vector3d&
   return clip;
 }
 
-/// What plates under the clip would have felt, one under each foot, the left foot's being the
-/// second. W of the file is W of the clip.
+/// Forces on plates under the clip, one under each foot, the left foot's being the second. W of the
+/// file is W of the clip.
 motion::GroundForces Plates(const motion::Motion& clip, double begin_s = 0) {
   const auto scene = Stage(clip, {}, "swaying").value();
   const Eigen::Index before = scene.motion.frames() - clip.frames();
@@ -229,7 +229,7 @@ TEST(Plates, TellTheirOwnTime) {
   ASSERT_TRUE(late.ok()) << late.error().message;
   EXPECT_NEAR(late->report.begin_s, 1.5, 1e-9);
   EXPECT_NEAR(late->report.end_s, 3.99, 1e-9);
-  EXPECT_LT(late->report.cop_rms_m.y(), 0.004);  // Of a sway of 2 cm.
+  EXPECT_LT(late->report.cop_rms_m.y(), 0.004);  // The body sways by 2 cm.
   const auto early = OnPlates(clip, Plates(clip, -1));
   ASSERT_TRUE(early.ok()) << early.error().message;
   EXPECT_EQ(early->report.begin_s, 0);

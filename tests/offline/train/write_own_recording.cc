@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kStartNs = 5'000'000'000;
 
-/// What is wrong with the recording: "" nothing.
+/// Fault of the recording: "" none.
 struct Writer {
   recording::RecordingWriter& out;
   const std::string& fault;

@@ -103,7 +103,7 @@ TEST(Objective, ChargesTheLatestFallMoreThanAllElseTogether) {
                     .leg_gap_m = -0.04};
   const Task run{stream::Gait::kRun, 3};
   TrialResult worst_change = worst;
-  worst_change.heading_error_rad = 0;  // Of turns alone.
+  worst_change.heading_error_rad = 0;  // Only turns have a heading error.
   worst_change.latency_s = 5;
   TrialResult fallen = AsWanted(run);
   fallen.survived = 0.9999;

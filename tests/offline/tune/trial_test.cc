@@ -144,7 +144,7 @@ TEST(Trials, BrakeWithTheTablesOtherSets) {
   const auto changes = [&run](std::uint64_t seed, std::uint64_t trial) {
     return Draw(run, MixSeeds(seed, trial)).change_s > 0;
   };
-  std::uint64_t seed = 1;  // Of two trials, the first is to walk.
+  std::uint64_t seed = 1;  // Seed with which the first of two trials is to walk.
   while (!changes(seed, 0) || changes(seed, 1)) ++seed;
 
   ASSERT_TRUE(team->Prepare({run}, table, 3).ok());
@@ -169,8 +169,9 @@ TEST(Trials, TimeAChangeToWalking) {
   EXPECT_EQ(walked.survived, 1);
   EXPECT_GT(walked.latency_s, 0.3);
   EXPECT_LT(walked.latency_s, 1.5);
-  EXPECT_LT(walked.speed_error_mps, 0.1);  // Of the run before.
-  // What is over before it walks counts up to there; what is never to walk has no latency.
+  EXPECT_LT(walked.speed_error_mps, 0.1);  // Error in the run before.
+  // A command that is over before it walks counts up to there; one that is never to walk has no
+  // latency.
   EXPECT_NEAR(result(4.9).latency_s, kTrialS - 4.9, 1e-9);
   EXPECT_EQ(result(0).latency_s, 0);
 }
@@ -192,7 +193,7 @@ TEST(Disturbances, OfARunArePushesTurnsPitsAndChangesOfGait) {
     pits += drawn.pit_m > 0 ? 1 : 0;
     changes += drawn.change_s > 0 ? 1 : 0;
   }
-  // Of 400: 45, 15, 15, 15 and 25 %, within three standard deviations.
+  // Shares of 400: 45, 15, 15, 15 and 25 %, within three standard deviations.
   EXPECT_NEAR(pushed, 180, 30);
   EXPECT_NEAR(pushed_turning, 60, 22);
   EXPECT_NEAR(turning, 60, 22);

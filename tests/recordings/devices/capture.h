@@ -42,7 +42,7 @@ struct Capture {
 Result<Capture> ReadCapture(const std::filesystem::path& path);
 std::string Print(const Capture& capture);
 
-/// What the hub is told at its attachment.
+/// Identity that the hub gets at its attachment.
 Result<devices::DeviceIdentity> IdentityOf(const Capture& capture);
 
 }  // namespace footing::recordings

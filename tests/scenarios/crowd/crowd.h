@@ -11,7 +11,7 @@
 
 namespace footing::crowd {
 
-/// What the crowd got of the ticks that were made within a time.
+/// Ticks that the crowd got, of those that were made within a time.
 struct Tally {
   std::uint64_t delivered = 0;  ///< Ticks, all viewers together.
   std::uint64_t expected = 0;   ///< Ticks that any viewer of an address got, times its viewers.
@@ -44,7 +44,7 @@ class Crowd {
   };
 
   Result<void> Add(std::size_t address);
-  /// What is there now, for at most this long.
+  /// Reads what is there now, for at most this long.
   Result<void> Poll(int timeout_ms);
   Result<void> ReadSome(Viewer& viewer);
   void OnTick(const Viewer& viewer, const TickHead& tick);
@@ -54,7 +54,7 @@ class Crowd {
   std::vector<Viewer> viewers_;
   std::size_t subscribed_ = 0;
   std::int64_t from_ns_ = 0, to_ns_ = 0;
-  std::vector<std::set<std::uint64_t>> sequences_;  ///< Of each address.
+  std::vector<std::set<std::uint64_t>> sequences_;  ///< Sequences at each address.
   Tally tally_;
 };
 

@@ -35,7 +35,7 @@ Result<nlohmann::ordered_json> Run(const Flags& flags) {
   std::cout << "begin" << std::endl;
   if (auto read = crowd.Read(to_ns, now_ns, to_ns); !read) return read.error();
   std::cout << "end" << std::endl;
-  // What is late is not lost.
+  // A late tick is not lost.
   if (auto read = crowd.Read(to_ns + 5 * kSecondNs, now_ns, to_ns); !read) return read.error();
   const crowd::Tally tally = crowd.tally();
   if (tally.delivered == 0) return Failure("no tick came");

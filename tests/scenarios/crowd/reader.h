@@ -6,7 +6,7 @@
 
 namespace footing::crowd {
 
-/// What a viewer must know of a tick.
+/// Fields of a tick that a viewer must know.
 struct TickHead {
   std::uint64_t sequence = 0;
   std::int64_t host_ns = 0;

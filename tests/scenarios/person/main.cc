@@ -28,7 +28,7 @@ using stream_client::Dialer;
 using stream_client::SimulatedDevice;
 using virtual_devices::LinkQuality;
 
-constexpr std::uint8_t kExhausted = 0x08;  // Of a Wiimote's battery; full is 0xc8.
+constexpr std::uint8_t kExhausted = 0x08;  // Level of a Wiimote's battery; full is 0xc8.
 constexpr std::size_t kLeftRemote = 2;     // Slots: left board, right board, left and right remote.
 
 struct Options {

@@ -204,7 +204,7 @@ SampleGrid Sine(double angle_rad, double amplitude_mps2) {
   return grid;
 }
 
-/// Of controllers that lie alike in both hands.
+/// Correlation of controllers that lie alike in both hands.
 double Correlation(const SampleGrid& left, const SampleGrid& right, double span_s) {
   return CorrelationNow(left, right, Eigen::Matrix3d::Identity(), span_s);
 }

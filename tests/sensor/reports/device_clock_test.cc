@@ -34,7 +34,7 @@ DeviceClockConfig ClockOf(const LinkConfig& link) {
 /// How the sensor's clock and the link are.
 struct Course {
   double seconds = 120;
-  double clock_error_ppm = 0;                                ///< Of the sensor.
+  double clock_error_ppm = 0;                                ///< Error of the sensor's clock.
   bool arrivals_alone = false;                               ///< Every report counts as changed.
   std::function<bool()> reads_alike = [] { return false; };  ///< A new sample, as the last.
   std::function<bool(std::int64_t arrives_ns)> lost = [](std::int64_t) { return false; };

@@ -1,4 +1,4 @@
-// What comes and goes at the extension port, before and while data flow.
+// Accessories that come and go at the extension port, before and while data flow.
 #include <gtest/gtest.h>
 
 #include "tests/sensor/reports/fixture.h"

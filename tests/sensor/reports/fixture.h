@@ -19,7 +19,7 @@ class Conversation {
   Conversation(Device device, const std::string& name)
       : device_(std::move(device)), kind_(kinds::MakeKind({}, {0, 0, name}, {})) {}
 
-  /// What the host sends and what arrives from the device may be changed or dropped (false).
+  /// Reports of the host and of the device as they arrive may be changed or dropped (false).
   std::function<bool(reports::OutputReport&)> on_output;
   std::function<bool(virtual_devices::Report&)> on_input;
   /// The device's data report of a step, if any.

@@ -61,7 +61,7 @@ class PortModel {
     return report;
   }
 
-  /// What a change of plugs makes the Wiimote say. Under an active MotionPlus a child says nothing.
+  /// Reports of the Wiimote at a change of plugs. Under an active MotionPlus a child says nothing.
   std::vector<Report> SetChild(Child child) {
     child_ = child;
     plain_ = key_ = false;

@@ -557,7 +557,7 @@ TEST(Nunchuk, TellsClippedAxes) {
 
 }  // namespace
 
-// What a device model feels comes back out of the decoders: two readings of the same tables, made
+// Inputs of a device model come back out of the decoders: two readings of the same tables, made
 // apart from each other, with calibrations of real units and many drawn ones.
 namespace {
 

@@ -9,7 +9,7 @@
 namespace footing::sensor {
 namespace {
 
-/// What must hold of every sample of a device's stream, and the gaps in it.
+/// Conditions on every sample of a device's stream, and on the gaps in it.
 class Stream {
  public:
   explicit Stream(double period_s = 0.01) : period_s_(period_s) {}

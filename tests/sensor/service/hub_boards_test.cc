@@ -46,7 +46,7 @@ TEST(HubBoards, LocalGravityIsDividedOut) {
   Bench untold;
   Bench corrected(told);
   for (Bench* bench : {&untold, &corrected}) {
-    // What weighs 600 N under standard gravity weighs less there.
+    // A mass that weighs 600 N under standard gravity weighs less there.
     const double corner_n = 150 * kEquatorMps2 / kStandardGravityMps2;
     bench->corners = {corner_n, corner_n, corner_n, corner_n};
     bench->Attach(BalanceBoard(1), "a");
@@ -88,7 +88,7 @@ TEST(HubBoards, TheBatteryIsByteTenOfTheDataAndNotTheStatusReports) {
   bench.Advance(1.5);
   EXPECT_GT(bench.StatusOf("a").battery_fraction, 0.8);
   EXPECT_FALSE(bench.StatusOf("a").battery_low);
-  board.controller().set_battery(0);  // Of the status report: nobody may believe it.
+  board.controller().set_battery(0);  // Level in the status report: it must not be believed.
   ASSERT_TRUE(bench.hub().RequestDeviceStatus(1));
   bench.Advance(0.5);
   EXPECT_GT(bench.StatusOf("a").battery_fraction, 0.8);

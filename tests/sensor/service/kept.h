@@ -10,7 +10,7 @@
 
 namespace footing::sensor {
 
-/// What is kept between two benches, as on a disk.
+/// State that is kept between two benches, as on a disk.
 class Kept {
  public:
   setup::Storage storage() {

@@ -1,4 +1,4 @@
-// What the hub says of time: sampled_ns against the true device clock, and what a lossy link did.
+// Times of the hub: sampled_ns against the true device clock, and what a lossy link did.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -83,7 +83,7 @@ TEST(StatusOfALossyLink, TellsRateRepeatsAndEveryGap) {
   EXPECT_NEAR(static_cast<double>(wiimote.reports), 9 * 100 + 51 * 70, 0.05 * (9 * 100 + 51 * 70));
   EXPECT_NEAR(static_cast<double>(board.reports), 60 * 83.6, 0.03 * 60 * 83.6);
   EXPECT_NEAR(board.report_rate_hz, 83.6, 15);  // A mean over one second: sd of 7 ms in 84.
-  // Of the table's quantiles: sd near 7 ms.
+  // Quantiles of the table: sd near 7 ms.
   EXPECT_GT(board.jitter_ms, 4);
   EXPECT_LT(board.jitter_ms, 11);
 }

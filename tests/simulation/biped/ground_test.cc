@@ -41,7 +41,7 @@ TEST(GroundBox, BeginsAStepInATurnWhereTheTrackHasIt) {
         std::to_string(step_m) + "}]}";
     const auto track = ParseTrack(text, "bend").value();
     const GroundBox first = BoxOf(track, 0), second = BoxOf(track, 1);
-    const auto height_m = [&](double x_m) {  // Of the upper box, on the centre line.
+    const auto height_m = [&](double x_m) {  // Height of the upper box, on the centre line.
       for (double z_m = 0.1; z_m > -0.1; z_m -= 0.005) {
         if (IsIn(first, {x_m, 0, z_m}) || IsIn(second, {x_m, 0, z_m})) return z_m;
       }

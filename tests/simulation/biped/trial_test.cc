@@ -83,7 +83,7 @@ TEST(Trial, WithoutAFinishLineItGoesOnUntilItIsStopped) {
   Stop(course.time_s, course.memory);
   EXPECT_EQ(course.memory.phase, TrialPhase::kStopped);
   EXPECT_NEAR(TimeOf(course.memory, course.time_s + 9), (300 - 1) / 4.0, 0.01);
-  Stop(course.time_s + 5, course.memory);  // Of no effect on a trial that is over.
+  Stop(course.time_s + 5, course.memory);  // Without effect on a trial that is over.
   EXPECT_NEAR(TimeOf(course.memory, course.time_s + 9), (300 - 1) / 4.0, 0.01);
   EXPECT_FALSE(GoesOn(course.memory));
 }

@@ -37,7 +37,7 @@ double FlightError(double step_s) {
 }
 
 TEST(World, FlightConservesMomentumWhateverTheJointsDo) {
-  // What is left is the integrator's error, of first order: it goes with the step.
+  // The rest is the integrator's error, of first order: it goes with the step.
   const double error_mps = FlightError(0.001);
   EXPECT_LT(error_mps, 0.02);
   EXPECT_LT(FlightError(0.00025), 0.3 * error_mps);

@@ -89,7 +89,7 @@ inline void ExpectAWalkWithoutAFall(Walk walk) {
   EXPECT_EQ(engine.Output().append.number, static_cast<std::uint64_t>(walk.segments));
   EXPECT_EQ(engine.track().revision, static_cast<std::uint64_t>(walk.segments) + 1);
   const auto here = terrain::Locate(engine.track(), engine.Output().p_WC_m.head<2>());
-  EXPECT_EQ(here.segment, walk.segments + 1);  // Of four and as many more.
+  EXPECT_EQ(here.segment, walk.segments + 1);  // Four segments and as many more.
 }
 
 }  // namespace footing::engine

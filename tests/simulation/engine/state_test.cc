@@ -441,7 +441,7 @@ using stream::Gait;
 /// The first flight of a jump.
 struct Leap {
   double flight_s = 0;
-  double rise_m = 0;  ///< Of the COM over its height at lift-off.
+  double rise_m = 0;  ///< Rise of the COM over its height at lift-off.
 };
 
 /// Commands the jump until it has leapt.

@@ -58,7 +58,7 @@ TEST(InputCollector, TheStickIsThatOfTheRigsHand) {
   v1::Tick tick = StickTick();
   AddStick(tick, 4, -1, -1);  // Plugged into a shin's Wiimote.
   AddStick(tick, 3, 0.3, 0.7);
-  AddStick(tick, 9, 1, 1);  // Of another rig.
+  AddStick(tick, 9, 1, 1);  // Stick of another rig.
   EXPECT_TRUE(collector.Take(tick, kMs));
   EXPECT_EQ(collector.rig(), "main");
   EXPECT_TRUE(collector.inputs().stick.present);

@@ -219,7 +219,7 @@ TEST(Leg, FeetThatAreLiftedUnequallyStepWhateverTheirPhase) {
 TEST(Leg, FeetThatTurnedJumpOnceTheyAreSeenTogetherOrLiftedAlike) {
   const Inputs uneven = Stepping(2.6, kPi, 20, 12);
   const Inputs alike = Stepping(2.6, 0, 17, 16);
-  Inputs together = Stepping(2.6, 0, 20, 12);  // Of the last period; no new one yet.
+  Inputs together = Stepping(2.6, 0, 20, 12);  // From the last period; no new one yet.
   together.legs.left.frequency_valid = together.legs.right.frequency_valid = false;
   for (const Inputs& inputs : {alike, together}) {
     LegInterface leg = NewLeg({.turn_by = TurnSource::kFeet});

@@ -42,7 +42,7 @@ inline Eigen::Vector3d ArmForce(const ArmSwing& arm, bool left, bool mounted, do
   const Eigen::Vector3d along = direction(angle(t_s) + arm.elbow_rad);
   const double rotation_rad = (left ? arm.grip_left_rad : arm.grip_right_rad) + arm.twist_rad;
   const Eigen::Vector3d side = Eigen::AngleAxisd(rotation_rad, along) * Eigen::Vector3d::UnitY();
-  const Eigen::Vector3d third = side.cross(along);  // Of the axes left, along, third.
+  const Eigen::Vector3d third = side.cross(along);  // Third of the axes left, along, third.
   if (mounted) return {force_W.dot(side), -force_W.dot(third), force_W.dot(along)};
   return {force_W.dot(side), force_W.dot(along), force_W.dot(third)};
 }

@@ -52,7 +52,7 @@ double TurnWith(ArmSwing motion, double twist_deg, bool mounted) {
   return command.turn_per_step_rad;
 }
 
-/// What `twist_deg` to the right commands.
+/// Turn that `twist_deg` to the right commands.
 double TurnFor(double twist_deg) {
   return twist_deg > 0 ? -kTwistStepRad : twist_deg < 0 ? kTwistStepRad : 0;
 }
@@ -256,7 +256,7 @@ class ArmUser {
   Inputs inputs_;
 };
 
-/// What a user does who stands, walks, and jumps.
+/// Intention of a user who stands, walks, and jumps.
 users::Intention WantedAt(double time_s) {
   if (time_s < 1) return {};
   if (time_s < kJumpsS) return {.gait = Gait::kWalk, .effort = 0.5};

@@ -61,8 +61,8 @@ TEST(CellPlay, ReadsNothingIntoNoise) {
   EXPECT_LT(square / kFrames, VerticalInput::kGroups / 50.0);
 }
 
-/// Of squats of 30 cm by a body that sways, of which hands and feet show a fifth, over 30 s: the
-/// rms error of the height, by cells with that play.
+/// Error of the height, rms, by cells with that play: squats of 30 cm over 30 s by a body that
+/// sways, of which hands and feet show a fifth.
 double HeightError(double half_width_n) {
   MadeBody body;
   body.com_m = [](double t) {

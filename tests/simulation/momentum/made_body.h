@@ -14,7 +14,7 @@ namespace footing::momentum {
 inline constexpr double kMadeStepS = 1 / 60.0;
 inline constexpr double kMadeMassKg = 70;
 inline constexpr double kMadeHeightM = 1.0;
-inline constexpr double kHalfLengthM = 0.2165;  ///< Of a board's sensors, along x.
+inline constexpr double kHalfLengthM = 0.2165;  ///< Half the distance of a board's sensors in x.
 inline constexpr double kHalfWidthM = 0.119;
 inline constexpr double kBoardYM = 0.16;
 

@@ -40,7 +40,7 @@ class ArticulatedBiped {
   /// Velocities of the start, for flights: of the body in the world, and of the joints.
   void SetVelocity(const Eigen::Vector3d& v_WB_mps, const Eigen::Vector3d& w_WB_radps,
                    const std::array<double, physics::kJoints>& joint_velocity);
-  /// Of the whole mechanism about its own COM, kg m2/s, and its energy without springs, J.
+  /// Momentum of the whole mechanism about its own COM, kg m2/s, and its energy without springs, J.
   Eigen::Vector3d AngularMomentum() const;
   double Energy() const;
 
@@ -90,7 +90,7 @@ class ArticulatedBiped {
   std::array<double, physics::kJoints> velocity_{};
   std::array<FootContact, physics::kLegs> contacts_;
 
-  // Of the present state, by Place.
+  // Results for the present state, by Place.
   std::array<Matrix6, kBodies> from_parent_;  ///< Motion vectors, parent to body frame.
   std::array<Vector6, kBodies> twist_;        ///< Spatial velocity in the body's frame.
   std::array<Eigen::Matrix3d, kBodies> R_W_;

@@ -78,7 +78,7 @@ TEST(FreeFlight, BothEnginesAgreeAfterASecondUnderTheSameEfforts) {
   }
 }
 
-/// What is lost of linear and angular momentum in a second of flight, and energy without efforts.
+/// Loss of linear and angular momentum in a second of flight, and of energy without efforts.
 struct Lost {
   double linear_mps, angular_kgm2ps, energy_j;
 };
@@ -101,7 +101,7 @@ TEST(FreeFlight, TheOracleKeepsMomentumWhateverTheJointsDo) {
   const Lost lost = Fly(0.001, true);
   EXPECT_LT(lost.linear_mps, 0.01);
   EXPECT_LT(lost.angular_kgm2ps, 0.1);
-  // What is lost is the integrator's: a tenth of the step loses about a tenth.
+  // The loss is the integrator's: a tenth of the step loses about a tenth.
   const Lost finer = Fly(0.0001, true);
   EXPECT_LT(finer.linear_mps, 0.2 * lost.linear_mps);
   EXPECT_LT(finer.angular_kgm2ps, 0.2 * lost.angular_kgm2ps);

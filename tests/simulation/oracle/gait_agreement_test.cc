@@ -11,7 +11,7 @@ namespace {
 
 using stream::Gait;
 
-/// What a gait is judged by, over ten seconds that begin when its speed is reached.
+/// Criteria of a gait, over ten seconds that begin when its speed is reached.
 struct Gaited {
   double speed_mps = 0;
   double apex_m = 0;  ///< Highest point of the COM.
@@ -60,7 +60,7 @@ TEST_P(SameGait, IsSeenByBothEngines) {
   EXPECT_GT(theirs.lowest_body_m, 0.55);
   EXPECT_NEAR(ours.speed_mps, theirs.speed_mps, 0.01 * std::max(1.0, command.speed_mps));
   EXPECT_NEAR(ours.apex_m, theirs.apex_m, 0.02 * theirs.apex_m);
-  EXPECT_NEAR(ours.steps, theirs.steps, 1);  // Of 16 to 27.
+  EXPECT_NEAR(ours.steps, theirs.steps, 1);  // There are 16 to 27.
   EXPECT_GT(theirs.steps, 10);
 }
 

@@ -148,7 +148,7 @@ struct LeftArm {
   static constexpr double kStepS = 0.01;
   ArmTracker tracker;
   std::vector<Place> places;
-  Eigen::Matrix3d R_WS = Eigen::Matrix3d::Identity();  ///< Of the one in the fist.
+  Eigen::Matrix3d R_WS = Eigen::Matrix3d::Identity();  ///< Attitude of the one in the fist.
   std::array<ArmEstimate, kArms> estimates;
 
   LeftArm(const std::optional<ArmModel>& model, std::vector<Place> devices)
@@ -179,7 +179,7 @@ struct LeftArm {
     }
   }
 
-  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Of the forearm since the T-pose.
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Forearm's turn since the T-pose.
 };
 
 TEST(ArmTracker, ItsDeviationsGrowAsTheHeadingDrifts) {

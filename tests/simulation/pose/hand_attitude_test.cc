@@ -192,7 +192,7 @@ struct Device {
 TEST(HandAttitude, IsInvalidUntilTheTPoseIsKnown) {
   Device device;
   EXPECT_FALSE(device.attitude.state().valid);
-  device.attitude.Align();  // Of nothing.
+  device.attitude.Align();  // Without any reading.
   EXPECT_FALSE(device.attitude.state().valid);
   device.Rest(1);
   EXPECT_FALSE(device.attitude.state().valid);

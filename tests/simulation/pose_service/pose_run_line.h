@@ -42,7 +42,7 @@ struct Line {
       told.insoles[f].load_n[0] = momentum::PressureOf(seen.loads.feet[f], 1).total_n;
     }
   }
-  /// What the boards have felt until the i-th frame, which comes at once.
+  /// Adds the impulses on the boards until the i-th frame, which comes at once.
   void Press(std::size_t i) {
     for (std::size_t f = 0; f < momentum::kFeet; ++f) {
       const momentum::FootLoads& foot = measured[i].loads.feet[f];

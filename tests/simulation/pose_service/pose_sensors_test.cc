@@ -48,7 +48,7 @@ struct PoseArmsTest : testing::Test {
     sample.set_sampled_ns(now_ns);
     *sample.mutable_specific_force_mps2() = wire::ToProto(Eigen::Vector3d(
         kStandardGravityMps2 * std::sin(roll_rad), 0, -kStandardGravityMps2 * std::cos(roll_rad)));
-    // Of what it reads, footingd has taken a part for its bias.
+    // A part of its readings has been taken by footingd for its bias.
     *sample.mutable_angular_velocity_radps() =
         wire::ToProto(Eigen::Vector3d(kBiasRadps, turn_radps - held_bias_radps, 0));
     *sample.mutable_gyroscope_bias_radps() = wire::ToProto(Eigen::Vector3d(0, held_bias_radps, 0));
@@ -220,7 +220,7 @@ namespace {
 constexpr std::int64_t kStartNs = 5'000'000'000;
 
 struct PoseSensorsTest : testing::Test {
-  /// What the engine is told after a tick.
+  /// Inputs of the engine after a tick.
   const PoseInputs& After(const v1::Tick& tick, double at_s = 0) {
     sensors.OnTick(tick, kStartNs + SecondsToNanoseconds(at_s));
     inputs.Refresh();
@@ -720,10 +720,10 @@ TEST(CountedPoint, IsNeverBetterThanTwoMillimetresNorWorseThanAMetre) {
   EXPECT_LE(point.sd_m.maxCoeff(), 1);
 }
 
-/// Of a magenta sphere at a good exposure times `exposure`, with a halo, in front of a camera that
-/// stands ahead of the person and looks back.
+/// Sightings of a magenta sphere at a good exposure times `exposure`, with a halo, in front of a
+/// camera that stands ahead of the person and looks back.
 struct Sphere {
-  double nees = 0, counted_nees = 0;  // Of depth.
+  double nees = 0, counted_nees = 0;  // Normalised squared errors of depth.
   int saturated = 0, found = 0;
 
   Sphere(double distance_m, double exposure) {

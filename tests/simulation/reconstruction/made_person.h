@@ -79,7 +79,7 @@ inline motion::Motion MadeMotion(const body::Body& person, double seconds) {
   return motion;
 }
 
-/// What the boards and the hands' sensors tell of a motion, a frame each.
+/// Inputs from the boards and the hands' sensors for a motion, a frame each.
 inline std::vector<Inputs> Measured(const body::Body& person, const motion::Motion& motion,
                                     double hand_noise_m = 0) {
   namespace sensors = virtual_sensors;

@@ -27,7 +27,8 @@ struct World {
   Reconstruction Made(const Options& options) const {
     return Reconstruction::Create(person, models, options).value();
   }
-  /// Of a basis in which everything moves, where the person's own is of crouches alone.
+  /// Reconstruction by a basis in which everything moves, where the person's own is of crouches
+  /// alone.
   Reconstruction FreelyMade() const {
     motion::Motion loose = motion;
     noise::Random random(5);

@@ -166,7 +166,7 @@ TEST(Reconstruction, IsNotValidWhileWhatIsMeasuredFitsNoPose) {
   EXPECT_GT(reconstruction.output().misfit, 2);
   EXPECT_FALSE(reconstruction.output().valid);
   EXPECT_GT(chest_sd_m(), 1.5 * sure_m);
-  // Of at most 25 at once the mean over half a second is under 2 after 0.5 s ln(25 / 2) = 1.3 s.
+  // The mean over half a second of at most 25 at once is under 2 after 0.5 s ln(25 / 2) = 1.3 s.
   for (std::size_t i = kBack; i < kBack + 90; ++i) reconstruction.Advance(world.inputs[i]);
   EXPECT_TRUE(reconstruction.output().valid);
 }

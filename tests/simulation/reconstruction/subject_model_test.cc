@@ -46,7 +46,7 @@ TEST(HandTrack, CarriesASteadyHandOnOverTheDelay) {
   for (; t_s < 1; t_s += kHandTrackStepS) track.Add(t_s, t_s * speed_mps, kSdM);
   t_s -= kHandTrackStepS;
   const HandInput now = track.At(t_s + 0.08);
-  // Of 9 cm; it is thought to slow down.
+  // The hand travels 9 cm; it is thought to slow down.
   EXPECT_LT((now.p_W_m - (t_s + 0.08) * speed_mps).norm(), 0.03);
   EXPECT_GT(now.sd_m.minCoeff(), kSdM.x());
   EXPECT_GT(track.At(t_s + 0.2).sd_m.x(), now.sd_m.x());
@@ -308,7 +308,7 @@ TEST_F(SkeletonTest, AJointThatJumpsMovesThePoseLittleAndNothingIsEverNaN) {
       Of(inputs.joints, BodyJoint::kRightKnee).p_W_m.x() += 1;
       Of(inputs.joints, BodyJoint::kHead).p_W_m.z() = kNaN;
       Of(inputs.joints, BodyJoint::kNeck).covariance_m2.setConstant(kNaN);
-      Of(inputs.joints, BodyJoint::kTorso).covariance_m2.setConstant(1);  // Of no errors.
+      Of(inputs.joints, BodyJoint::kTorso).covariance_m2.setConstant(1);  // Not a valid covariance.
       Of(inputs.joints, BodyJoint::kLeftFoot).sd_m.setZero();
     }
     jumped.Advance(inputs);

@@ -252,7 +252,7 @@ namespace {
 
 constexpr double kPlatesMassKg = 60;  // By the same plates under the standing subject (static1).
 
-/// What the plates of a trial felt together around one instant of the motion.
+/// Load and COP of the plates of a trial together around one instant of the motion.
 struct Felt {
   double load_n = 0;
   Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
@@ -295,9 +295,9 @@ Result<Trial> Read(const std::string& name) {
   return trial;
 }
 
-/// What the forces of frames [begin, end) are off by.
+/// Error of the forces of frames [begin, end).
 struct Off {
-  double force_share = 0;  ///< Of the weight, root mean square.
+  double force_share = 0;  ///< Share of the weight, root mean square.
   Eigen::Vector2d cop_m, cop_sd_m;
 };
 

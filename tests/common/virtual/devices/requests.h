@@ -5,7 +5,7 @@
 
 #include "common/virtual/devices/controller.h"
 
-/// What a host writes to a device.
+/// Writes of a host to a device.
 namespace footing::virtual_devices {
 
 inline Report ReadRequest(bool registers, std::uint32_t address, std::uint16_t size) {

@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Axis = body::Axis;
 
-constexpr double kSplay = 0.35;  ///< Of the legs at rest, as in CMU's skeletons.
+constexpr double kSplay = 0.35;  ///< Splay of the legs at rest, as in CMU's skeletons.
 
 /// At rest the arms are held out and the legs apart.
 body::Skeleton Body() {

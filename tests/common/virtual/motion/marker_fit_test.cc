@@ -220,7 +220,7 @@ TEST(MarkerFit, ErrorsSayWhatIsMissing) {
               HasSubstr("which also needs LASI, RASI"));
   EXPECT_THAT(FitMarkers(made.tracks, {.set = "mine"}).error().message,
               HasSubstr("there are opencap, plug-in-gait"));
-  // Of several markers one is enough; C7 has no side.
+  // One of several markers is enough; C7 has no side.
   EXPECT_THAT(FitMarkers(made.tracks, {.set = "vicon53"}).error().message,
               AllOf(HasSubstr("LMT1 or LMT5, RMT1 or RMT5"), Not(HasSubstr("@"))));
   MarkerTracks no_neck = made.tracks;

@@ -23,7 +23,7 @@ Style Ordinary() {
   return style;
 }
 
-/// What is felt every 10 ms, from `from_s` for `duration_s`, of a constant intention.
+/// Readings every 10 ms, from `from_s` for `duration_s`, at a constant intention.
 std::vector<Felt> Perform(Person& person, const Intention& wanted, double from_s,
                           double duration_s) {
   std::vector<Felt> felt;
