@@ -49,7 +49,7 @@ struct PlanPanel {
   std::vector<PlanShape> shapes;  ///< Later ones are drawn over earlier ones.
 };
 
-/// What a colour means.
+/// Legend entry: the meaning of a colour.
 struct PlanKey {
   std::string colour;
   std::string meaning;

@@ -56,7 +56,7 @@ struct Sway {
   double ellipse95_prieto_m2 = 0;      ///< 2 pi 3.00 sqrt(det S) (Prieto 1996, eqs. 13 to 17).
   double ellipse_axis_major_sd_m = 0;  ///< Square roots of the eigenvalues of S.
   double ellipse_axis_minor_sd_m = 0;
-  double ellipse_angle_rad = 0;  ///< Of the major axis from x, in (-pi/2, pi/2].
+  double ellipse_angle_rad = 0;  ///< Angle of the major axis from x, in (-pi/2, pi/2].
   double sway_area_rate_m2ps = 0;
   double circle95_m2 = 0;
   double mean_frequency_hz = 0;  ///< Mean velocity / (2 pi mean distance) (eq. 19); 0 at rest.
@@ -99,10 +99,10 @@ struct BoardShape {
 struct Gaps {
   std::size_t count = 0;
   double longest_s = 0;
-  double seconds = 0;  ///< Of all together.
+  double seconds = 0;  ///< Total duration of all gaps.
 };
 
-/// What stood on the board.
+/// Load on the board: its weight, and the stretches of time in which somebody stood on it.
 struct Standing {
   double weight_n = 0;      ///< Median of the totals while anybody stood on it; 0: nobody did.
   std::size_t samples = 0;  ///< With a COP.

@@ -11,7 +11,7 @@ namespace footing::learning {
 struct QuickpropOptions {
   double epsilon = 1;  ///< Part of the slope that is gone down besides, or instead at a start.
   double growth = 2;   ///< mu: a step is at most this many times the last one.
-  double decay = 0;    ///< Of the weights, added to the slope.
+  double decay = 0;    ///< Decay of the weights, added to the slope.
 };
 
 /// State of one set of weights; goes down the slopes it is given.
@@ -40,8 +40,8 @@ struct CandidateOptions {
   QuickpropOptions quickprop = {.epsilon = 2, .growth = 2, .decay = 0};
 };
 
-/// What candidates see, and what they are to explain. Covariance is searched in single precision,
-/// which is twice as fast; error reduction takes the difference of nearly equal numbers.
+/// Inputs of candidates, and the errors they are to explain. Covariance is searched in single
+/// precision, which is twice as fast; error reduction takes the difference of nearly equal numbers.
 template <typename Scalar>
 struct CandidateTask {
   using Matrix = Eigen::MatrixX<Scalar>;

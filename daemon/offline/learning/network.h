@@ -17,12 +17,12 @@ namespace footing::arm_network {
 
 enum class Kind {
   kPaper,     ///< {q_a(t), a, omega} to q_a(t + 1), a and omega in the device's frame.
-  kResidual,  ///< What is left after the kinematic prediction, from it and arms::ArmFeatures.
+  kResidual,  ///< Residual of the kinematic prediction, from it and arms::ArmFeatures.
 };
 
 /// q_a of a left arm: four degrees of freedom.
 struct ArmPose {
-  Eigen::Matrix3d R_WU = Eigen::Matrix3d::Identity();  ///< Of the upper arm; I in the T-pose.
+  Eigen::Matrix3d R_WU = Eigen::Matrix3d::Identity();  ///< Upper arm; I in the T-pose.
   double elbow_rad = 0;
 };
 
@@ -35,7 +35,7 @@ ArmPose ToPose(const arms::ArmDirections& arm);
 ArmPose Predicted(const ArmPose& pose, const Eigen::Vector3d& elbow_axis_U,
                   const Eigen::Vector3d& angular_velocity_W_radps, double step_s);
 
-/// What one frame says of an arm, as of a left one.
+/// Measurements of one frame of an arm, mirrored to a left one.
 struct FrameInput {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
@@ -77,7 +77,7 @@ Result<ArmNetwork> MakeArmNetwork(const model::Model& model, const std::string& 
 struct Sequence {
   std::vector<FrameInput> inputs;
   std::vector<ArmPose> truth;
-  std::vector<Eigen::Vector3d> forearm;  ///< Of the truth: elbow to fist.
+  std::vector<Eigen::Vector3d> forearm;  ///< Elbow to fist in the truth.
   double step_s = 0;
 };
 
