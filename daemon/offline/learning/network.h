@@ -82,8 +82,8 @@ struct Sequence {
 };
 
 struct TrainingOptions {
-  /// Of scheduled teacher forcing (Bengio et al. 2015): in the first the network receives the true
-  /// last pose, in the last nothing but its own estimates. One: teacher forcing alone.
+  /// Rounds of scheduled teacher forcing (Bengio et al. 2015): in the first the network receives
+  /// the true last pose, in the last nothing but its own estimates. One: teacher forcing alone.
   int rounds = 4;
   double noise_rad = 0.2;  ///< On the true poses it receives, the same for two seconds.
   int every = 12;          ///< Frames from one row of training to the next.
@@ -93,9 +93,9 @@ struct TrainingOptions {
 struct Trained {
   ArmNetwork network;
   int hidden_units = 0;
-  int round = 0;           ///< Of which it comes, from 0.
+  int round = 0;           ///< The round it comes from, from 0.
   double closed_loop = 0;  ///< RMS error of upper, hinge and forearm on the last fifths.
-  std::size_t rows = 0;    ///< Of the last round's training.
+  std::size_t rows = 0;    ///< Rows in the last round's training.
 };
 
 /// The paper's: one round, no noise.

@@ -42,7 +42,7 @@ Result<void> ReplaceFile(const std::string& path, const std::string& text);
 struct TunedSet {
   gait::GainSet set;  ///< The answer's gains when it is better, else the start's.
   Score before, after;
-  Difference difference;  ///< Of the answer's objective from the start's; below 0 is better.
+  Difference difference;  ///< The answer's objective less the start's; below 0 is better.
   bool better = false;    ///< No more falls, and lower with its whole 95 % interval.
 };
 
