@@ -81,8 +81,8 @@ class DeviceSource {
   /// A device that was taken is not any more: it hears why, and what it sends is ignored. Only
   /// simulated devices are ever refused.
   virtual void Refuse(DeviceHandle device, const std::string& why) = 0;
-  /// The call in which a thread of its devices has been stuck for longer than the kernel may take;
-  /// empty: nothing.
+  /// Name of a thread that has been stuck in a call for longer than the kernel may take; empty:
+  /// none.
   virtual std::string Stuck() const { return ""; }
   /// Detaches everything without calling the handlers. May be called twice.
   virtual void Stop() = 0;

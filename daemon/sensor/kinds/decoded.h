@@ -12,7 +12,7 @@
 #include "daemon/sensor/reports/input_report.h"
 #include "daemon/sensor/reports/sequencer.h"
 
-/// What every kind of device gives: samples of one report in SI units, made with the device's own
+/// Output of every kind of device: samples of one report in SI units, made with the device's own
 /// calibration. They know no time: who stamps the samples adds device, report count, times, filter
 /// and gyroscope bias.
 namespace footing::decode {

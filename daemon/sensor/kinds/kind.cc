@@ -119,7 +119,7 @@ void Kind::Restart() {
       alternatives_);
 }
 
-/// What answers at the port decides the kind; it may have read a block too.
+/// Follows the plan of the device that answers at the port; it may have read a block too.
 void Kind::FollowPlan() {
   const bool other = std::visit(
       []<typename One>(const One& one) {

@@ -67,7 +67,7 @@ class Kind {
   bool RequestStatus(std::int64_t now_ns);
 
   void AddTo(stream::DeviceStatus& status) const;
-  /// What is wrong and what to do, for a person; empty when all is well.
+  /// Text for a person: the trouble and what to do; empty when all is well.
   std::string Note(std::int64_t now_ns) const;
 
   const Alternatives& alternatives() const { return alternatives_; }

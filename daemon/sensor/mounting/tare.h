@@ -50,7 +50,7 @@ struct DisplacementConfig {
 
 /// Whether a tared board was moved. A plain value; it stays true until it is restarted.
 ///
-/// What can be sensed is force across the plate alone. Lifting the board, or one edge of it, shows
+/// Only force across the plate can be sensed. Lifting the board, or one edge of it, shows
 /// while it is up; a board that was put down on another floor shows by its corners. Sliding or
 /// turning it on the same floor, empty or under a person, changes no vertical force and cannot be
 /// distinguished from standing; neither can anything while the board is off. The layout's check

@@ -79,8 +79,8 @@ struct Data {
   /// x, y, z in counts of 10 bits; y and z carry 9 real bits, their lowest is 0. Of a joined pair
   /// 8 real bits, their lowest two are 0.
   std::array<std::uint16_t, 3> acceleration_counts{};
-  std::uint8_t half_axis = 0;  ///< Of a half: its byte of x or y, 8 bits.
-  std::uint8_t half_z = 0;     ///< Of a half: its four bits of z, the first's are the upper ones.
+  std::uint8_t half_axis = 0;  ///< In a half: its byte of x or y, 8 bits.
+  std::uint8_t half_z = 0;     ///< In a half: its four bits of z, the first's are the upper ones.
   std::array<std::uint8_t, 21> extension_bytes{};
   std::uint8_t extension_size = 0;
   std::array<std::uint8_t, 36> camera_bytes{};
@@ -113,7 +113,7 @@ class Interleaver {
   std::optional<Data> first_;
 };
 
-/// Of a Wiimote's status, 0 to 1: bars at 0x33, 0x44, 0x55, full at 0x7c (hid-wiimote).
+/// Charge in a Wiimote's status, 0 to 1: bars at 0x33, 0x44, 0x55, full at 0x7c (hid-wiimote).
 double BatteryFraction(std::uint8_t raw);
 
 /// The bright points that a Wiimote's infrared camera sees.
@@ -123,7 +123,7 @@ double BatteryFraction(std::uint8_t raw);
 /// outside the camera's 1024 x 768 is not seen either.
 std::vector<stream::CameraPoint> DecodeCamera(Bytes camera);
 
-/// What is plugged into the extension port, and the Balance Board's bytes.
+/// Device in the extension port, and the Balance Board's bytes.
 enum class Extension {
   kNotReady,  ///< All FF, or encrypted leftovers: ask again, do not conclude that there is none.
   kNunchuk,
@@ -208,10 +208,10 @@ std::optional<ClassicCounts> DecodeClassic(Bytes extension);
 /// The form in which a MotionPlus passes it on: the lowest bits of the left stick are lost.
 std::optional<ClassicCounts> DecodePassedClassic(Bytes extension);
 
-/// What a packet of an active MotionPlus is.
+/// Kind of a packet of an active MotionPlus.
 enum class PassedPacket {
   kMotionPlus,
-  kExtension,  ///< Of the child: Nunchuk or Classic.
+  kExtension,  ///< From the child: Nunchuk or Classic.
   kRubbish,    ///< Short, all 00, or with the bit set that is always 0: right after activation.
 };
 

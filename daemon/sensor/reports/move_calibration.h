@@ -78,7 +78,7 @@ MoveCalibration ParseMove(reports::MoveModel model, reports::Bytes blob);
 struct MoveReading {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
-  std::uint32_t clipped_axes = 0;  ///< Of the accelerometer; bits 0, 1, 2: x, y, z.
+  std::uint32_t clipped_axes = 0;  ///< Accelerometer's axes; bits 0, 1, 2: x, y, z.
   bool angular_velocity_clipped = false;
   double trigger = 0;  ///< 0 to 1.
 };

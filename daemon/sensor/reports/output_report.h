@@ -48,7 +48,7 @@ class MemoryRead {
   void Restart() { bytes_.clear(); }
 
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-  /// Of the reply that was refused: 7 or 8.
+  /// Error code of the reply that was refused: 7 or 8.
   std::uint8_t error() const { return error_; }
 
  private:

@@ -43,7 +43,7 @@ class Hub {
     std::function<void(devices::DeviceHandle, const std::string& why)> refuse = {};
   };
 
-  /// What a command measured.
+  /// Measurement by a command.
   struct Measured {
     double residual = 0;
     std::string unit;
@@ -149,7 +149,7 @@ class Hub {
                bool to_device, std::int64_t true_ns, bool feature = false);
   void Flush(Device& device);
   void Refuse(const std::string& what, const std::string& why);
-  /// What is timed by itself: kind of frame, rig, name of the sender, and which part of a body.
+  /// Key of one exposure clock: kind of frame, rig, name of the sender, and which part of a body.
   using Exposed = std::tuple<char, std::string, std::string, int>;
   hands::ExposureClock::Exposure Expose(const Exposed& what, const hands::FrameTimes& times);
   void PublishExposures();

@@ -26,7 +26,7 @@ struct Storage {
   std::function<void(const std::string& name, const std::string& why)> refuse;
 };
 
-/// What `read` makes of the text saved under this name. None if there is none; text that it cannot
+/// Reads the text saved under this name with `read`. None if there is none; text that it cannot
 /// read is refused and none as well.
 template <typename Content>
 std::optional<Content> Load(const Storage& storage, const std::string& name,
@@ -52,7 +52,7 @@ struct StoredTare {
   double residual_n = 0;
 };
 
-/// What a device reports of its own calibration.
+/// Calibration that a device reports of itself.
 struct StoredCalibration {
   std::string serial;
   std::vector<std::uint8_t> bytes;
