@@ -30,7 +30,7 @@ struct WorldNames {
   std::vector<std::string> ground;        ///< Boxes of the world body that may be moved.
 };
 
-/// What is seen of the state. Positions and velocities are of the present state; contact forces
+/// Observation of the state. Positions and velocities are of the present state; contact forces
 /// are those that acted in the last step.
 struct Observation {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< Root's origin, m.
@@ -156,7 +156,7 @@ Result<int> IdOf(const mjModel& model, mjtObj type, const std::string& name);
 inline constexpr int kRootDofs = 6;
 inline constexpr int kDofs = kRootDofs + kJoints;
 
-/// What a World owns.
+/// MuJoCo's model and state, and where the links are in them.
 struct World::Parts {
   ModelPointer model;
   StatePointer state;

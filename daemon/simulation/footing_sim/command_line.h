@@ -49,7 +49,7 @@ Result<Config> ReadConfigAgain(int argc, char** argv);
 Result<serving::Served> StartService(boost::asio::io_context& io, const Config& config,
                                      const std::string& version);
 
-/// What StartService checks besides the config itself: reads all files and builds the engine, and
+/// Checks of StartService besides the config itself: reads all files and builds the engine, and
 /// opens no socket.
 Result<void> CheckService(const Config& config);
 

@@ -80,7 +80,7 @@ class GaitLine {
   Result<void> SetInterface(const transport::SessionInfo& who, const v1::SetInterface& message);
   /// Stops the trial of a game whose leader has gone: the runner would run off its track's end.
   void EndLeftGame();
-  /// What changed of the retained channels since the last frame.
+  /// Adds the changes of the retained channels since the last frame.
   void AddChanges(const Frame& frame, bool switched,
                   std::vector<transport::ChannelBytes>& channels);
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
