@@ -52,7 +52,7 @@ class LegInterface {
 
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
-  /// What the limbs showed before does not count.
+  /// Forgets what the limbs showed before.
   void StartAgain() { gait_.Rest(); }
   const stream::InterfaceState& state() const { return state_; }
 
@@ -99,7 +99,7 @@ class AnyInterface {
   void StartAgain();
   /// A new trial: how the person holds the controllers is learned again where it is learned.
   void RenewGrip();
-  /// What it believes that the person does, as of the last Advance.
+  /// The person's movement as the interface takes it, as of the last Advance.
   const stream::InterfaceState& state() const;
 
  private:

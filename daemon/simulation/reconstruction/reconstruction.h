@@ -35,7 +35,7 @@ class Reconstruction {
 
   const body::Body& body() const { return model_->body; }
   const Output& output() const { return output_; }
-  /// Of the last frame of best mode, for training; only when calibrated.
+  /// Features of the last frame of best mode, for training; only when calibrated.
   const Features& features() const { return std::get<BestMode>(mode_).features(); }
   const LikelyPosture& posture() const { return std::get<BestMode>(mode_).posture(); }
 

@@ -16,7 +16,7 @@
 /// character.
 namespace footing::serving {
 
-/// What the frames of all engines have in common.
+/// State that the frames of all engines have in common.
 struct FrameState {
   std::uint64_t step = 0;
   double time_s = 0;
@@ -32,7 +32,7 @@ struct FrameState {
 v1::CharacterFrame MakeFrame(const FrameState& state, const std::string& world,
                              const std::string& rig);
 v1::Event MakeEvent(v1::Event::Kind kind, std::int64_t host_ns, const std::string& text = "");
-/// What happened to the lease, for a person.
+/// Adds the changes of the lease, as events for a person.
 void AddLeaseEvents(const std::vector<std::string>& changes, std::int64_t host_ns,
                     v1::Events& events);
 v1::Skeletons MakeSkeletons(const std::string& world, const stream::Skeleton& skeleton);

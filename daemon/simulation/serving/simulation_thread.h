@@ -44,7 +44,7 @@ struct Config {
   std::string metrics;              ///< Where metrics are served (MetricsEndpoint); empty: nowhere.
   transport::SessionLimits sessions;
   transport::AccessSettings access;
-  std::string version;  ///< Of the program; not a setting.
+  std::string version;  ///< Version of the program; not a setting.
 
   void Bind(config::Binder& binder);
 };
@@ -221,7 +221,7 @@ Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
                 [serving] { return serving->Stuck(); }, serving->listening_on()};
 }
 
-/// What StartServing checks besides the config itself, without its sockets and its thread.
+/// Checks of StartServing besides the config itself, without its sockets and its thread.
 template <typename Line, typename MakeLine>
 Result<void> CheckServing(const Config& config, const MakeLine& make_line) {
   if (auto access = config.access.CheckStart(config.listen); !access) return access;
@@ -230,7 +230,8 @@ Result<void> CheckServing(const Config& config, const MakeLine& make_line) {
   return line ? Result<void>() : line.error();
 }
 
-/// What every engine says on the channel "config": program, version, its name and all settings.
+/// Settings that every engine publishes on the channel "config": program, version, its name and all
+/// settings.
 template <typename EngineConfig>
 nlohmann::ordered_json EffectiveSettings(Config common, const char* engine, EngineConfig config) {
   config::Binder binder;
@@ -288,7 +289,7 @@ class SimulationThread {
 
   exchange::Latest<Inputs>& inputs() { return inputs_; }
   exchange::BoundedQueue<Frame>& frames() { return frames_; }
-  /// Of the simulation thread once that has started.
+  /// Run of the engine; the simulation thread's once that has started.
   const Run& run() const { return run_; }
 
  private:
