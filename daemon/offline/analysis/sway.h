@@ -82,11 +82,13 @@ std::vector<CopSample> Resample(std::span<const CopSample> samples, double rate_
 /// Middle one of the intervals between samples; 0 for fewer than two samples.
 double MedianInterval(const Stretches& stretches);
 
+/// Forces on a board's corners at one time.
 struct CornerSample {
   double time_s = 0;
   board::CornerForces forces;
 };
 
+/// Geometry of a board and the loads that count as a person on it.
 struct BoardShape {
   stream::BoardGeometry geometry = board::kBalanceBoard;
   /// Less than this is nobody: the board and a step on or off it.

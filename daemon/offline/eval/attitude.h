@@ -32,6 +32,7 @@ Result<std::vector<ImuSample>> ReadImu(const std::string& path);
 std::vector<ImuSample> AsWiimote(const std::vector<ImuSample>& samples, std::uint64_t seed,
                                  double& rate_hz);
 
+/// Options of a trial of the attitude filter.
 struct AttitudeTrialOptions {
   double rate_hz = 0;
   double still_s = 2;  ///< The device rests at first: mean force and bias come from there.

@@ -11,6 +11,7 @@
 /// Slopes and steps to walk over: a straight track, and the pilot who leads the character along it.
 namespace footing::eval {
 
+/// A track of slopes or steps, and where they are.
 struct GroundCourse {
   std::string track;            ///< Text for GaitEngine::Create.
   std::vector<double> edges_m;  ///< Where the ground changes, along x: steps, or the slope's foot.

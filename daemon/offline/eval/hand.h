@@ -12,6 +12,7 @@
 
 namespace footing::eval {
 
+/// Times for which the camera sees and loses a hand, and errors of the devices.
 struct HandTrialOptions {
   std::vector<double> hidden_s = {0.1, 0.25, 0.5};
   double seen_s = 2;

@@ -31,11 +31,13 @@ struct MomentumOptions {
   virtual_sensors::CellErrorConfig errors;
 };
 
+/// True load and place of a foot, W.
 struct TrueFoot {
   double load_n = 0;
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< Middle of the sole.
 };
 
+/// Cells' loads in one frame, beside the truth, W.
 struct MomentumFrame {
   momentum::ContactLoads loads;
   Eigen::Vector3d com_m;
@@ -43,6 +45,7 @@ struct MomentumFrame {
   std::array<TrueFoot, momentum::kFeet> feet;
 };
 
+/// A person on cells, frame by frame.
 struct MomentumScene {
   double rate_hz = 60;
   momentum::Subject subject;

@@ -110,6 +110,7 @@ inline bool Has(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
+/// Adds the options of a pose subcommand.
 void AddPoseFlags(CLI::App& command, PoseFlags& flags);
 /// Translates the strings into the options; an error names the flag.
 Result<void> Translate(PoseFlags& flags);

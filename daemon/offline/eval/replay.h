@@ -33,6 +33,7 @@ Result<void> CheckFirstStep(std::uint64_t first_step);
 /// Feeds the raw reports of footingd's ticks to the same code that published them.
 FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);
 
+/// Data files and settings to replay footing-sim with.
 struct BipedReplayOptions {
   engine::EngineTexts texts;    ///< The data files.
   engine::EngineConfig config;  ///< With the first interface.

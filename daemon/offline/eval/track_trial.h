@@ -163,6 +163,7 @@ struct TrackUser {
   std::optional<double> seconds = {};
 };
 
+/// Measures of one run along a track.
 struct TrackResult {
   bool completed = false;  ///< Crossed the finish line.
   double time_s = 0;       ///< From the start line to there.

@@ -15,6 +15,7 @@ struct Leap {
   double commanded_m = 0;  ///< That height.
 };
 
+/// Outcome of one change of gait.
 struct TransitionResult {
   bool fell = false;
   bool succeeded = false;

@@ -31,6 +31,7 @@ class Quickprop {
 /// s' = 1/4 - s^2.
 Eigen::ArrayXXd Sigmoid(const Eigen::ArrayXXd& x);
 
+/// Options of the candidates' training.
 struct CandidateOptions {
   int pool = 8;
   int epochs_max = 200;
@@ -85,6 +86,7 @@ Scores<Scalar> Score(const CandidateTask<Scalar>& task, const Eigen::MatrixXd& w
 template <typename Scalar>
 Eigen::MatrixXd ScoreGradient(const CandidateTask<Scalar>& task, const Scores<Scalar>& scores);
 
+/// The candidate that won, trained.
 struct NewUnit {
   Eigen::VectorXd weights;
   Eigen::VectorXd values;        ///< On the rows of `units`.
@@ -97,6 +99,7 @@ template <typename Scalar>
 NewUnit TrainCandidates(const CandidateTask<Scalar>& task, const CandidateOptions& options,
                         noise::Random& random);
 
+/// Options of the training of sigmoid outputs.
 struct OutputOptions {
   int epochs_max = 200;
   int patience = 8;

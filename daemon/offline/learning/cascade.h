@@ -10,6 +10,7 @@
 
 namespace footing::learning {
 
+/// Kinds of output units.
 enum class Outputs {
   kLinear,   ///< Any targets; output weights by least squares.
   kSigmoid,  ///< Targets of +-1/2, as the classic problems have; by Quickprop.
@@ -18,6 +19,7 @@ enum class Outputs {
 /// Training objective of a candidate unit; see Scores.
 enum class Objective { kCovariance, kErrorReduction };
 
+/// Options of TrainCascade.
 struct CascadeOptions {
   Outputs outputs = Outputs::kLinear;
   /// Objective for linear outputs; candidates for sigmoid ones always go by covariance.
@@ -37,6 +39,7 @@ struct CascadeOptions {
   OutputOptions output_training;
 };
 
+/// A trained network with its errors, mean squared, in the targets' unit squared.
 struct CascadeResult {
   cascade::CascadeNetwork network;
   int hidden_units = 0;

@@ -63,6 +63,7 @@ struct SwaySettings {
 };
 LoadClip MakeSway(const SwaySettings& settings, std::uint64_t seed);
 
+/// Errors and limits of the boards in BoardLoads.
 struct BoardLoadSettings {
   double noise_kg = 0.1;  ///< Noise of a cell.
   bool limited = true;    ///< Boards have an edge: virtual_sensors::LoadBoard.

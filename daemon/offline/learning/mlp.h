@@ -72,6 +72,7 @@ struct MlpGradient {
 MlpGradient Gradient(const Mlp& network, const Eigen::MatrixXd& scaled_inputs,
                      const Eigen::MatrixXd& scaled_targets);
 
+/// Options of the training of a network with one hidden layer.
 struct MlpOptions {
   int hidden = 20;
   double rate = 0.05;     ///< Step along the mean gradient of a batch of scaled rows.
@@ -84,6 +85,7 @@ struct MlpOptions {
   int patience = 100;  ///< Epochs without a better error, then it stops.
 };
 
+/// A trained network with its mean squared errors.
 struct MlpResult {
   Mlp network;  ///< Network of the best epoch.
   int epochs = 0;

@@ -15,6 +15,7 @@
 /// compare with the product's regression (docs/hands.md).
 namespace footing::arm_network {
 
+/// Inputs and outputs of a network.
 enum class Kind {
   kPaper,     ///< {q_a(t), a, omega} to q_a(t + 1), a and omega in the device's frame.
   kResidual,  ///< Residual of the kinematic prediction, from it and arms::ArmFeatures.
@@ -48,6 +49,7 @@ FrameInput MakeInput(std::size_t arm, const arms::HandReading& reading,
                      const arms::HandState& state, const arms::ArmFeatures& features);
 
 inline constexpr std::size_t kOutputs = 4;
+/// Number of inputs of such a network.
 std::size_t InputCount(Kind kind);
 
 /// The network's inputs. `last` is the estimate of the frame before; of kResidual its prediction.
@@ -55,8 +57,10 @@ Eigen::VectorXd NetworkInputs(Kind kind, const ArmPose& last, const Eigen::Vecto
                               const FrameInput& frame);
 /// The outputs that lead from `last` (as above) to `next`, and the way there.
 Eigen::Vector4d NetworkTarget(Kind kind, const ArmPose& last, const ArmPose& next);
+/// The pose that the outputs lead to from `last`.
 ArmPose Applied(Kind kind, const ArmPose& last, const Eigen::Vector4d& output);
 
+/// A recurrent network that estimates an arm's pose frame by frame.
 struct ArmNetwork {
   Kind kind = Kind::kPaper;
   Eigen::Vector3d elbow_axis_U = Eigen::Vector3d::UnitZ();
@@ -69,6 +73,7 @@ struct ArmNetwork {
 /// "arm_paper" or "arm_residual", as a model's kind.
 std::string KindName(Kind kind);
 
+/// Appends the network to a model file's tensors.
 void AppendTensors(const ArmNetwork& network, model::Model& model);
 /// InvalidData where the model is of another kind or its tensors do not fit; `origin` names it.
 Result<ArmNetwork> MakeArmNetwork(const model::Model& model, const std::string& origin);
@@ -81,6 +86,7 @@ struct Sequence {
   double step_s = 0;
 };
 
+/// Options of an arm network's training.
 struct TrainingOptions {
   /// Rounds of scheduled teacher forcing (Bengio et al. 2015): in the first the network receives
   /// the true last pose, in the last nothing but its own estimates. One: teacher forcing alone.
@@ -90,6 +96,7 @@ struct TrainingOptions {
   int hidden_max = 10;
 };
 
+/// A trained arm network with its closed-loop error.
 struct Trained {
   ArmNetwork network;
   int hidden_units = 0;

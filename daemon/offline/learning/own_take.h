@@ -60,6 +60,7 @@ Result<OwnTake> MirrorImage(const OwnTake& take);
 /// way between the feet's COPs in the T-pose; a clip for each span in which both boards speak.
 std::vector<LoadClip> OwnLoads(const OwnTake& take);
 
+/// Settings of the examples made from an own take.
 struct OwnExampleSettings {
   PoseCues cues = PoseCues::kMomentum;
   double rate_hz = 60;

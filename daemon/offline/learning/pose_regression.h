@@ -68,6 +68,7 @@ inline constexpr int kFolds = 5;  ///< Pieces of time, where there are too few p
 
 inline constexpr RandomWaves kPoseWaves{.count = 500};
 
+/// A pose regression with the principal axes of its errors.
 struct FittedPoseRegression {
   reconstruction::PoseRegression regression;
   Eigen::MatrixXd rest_components;  ///< Rows; principal axes of the errors, scaled.
@@ -95,6 +96,7 @@ struct ArmExamples {
   int fold_count = 0;      ///< At least two.
 };
 
+/// An arm regression with its ridge and errors.
 struct FittedArm {
   arms::ArmModel model;
   double ridge = 0, error = 0, spread = 0;  ///< As of RidgeFit.

@@ -90,6 +90,7 @@ struct BoardReading {
   std::array<double, 4> corners_n{};
 };
 
+/// A tracked hand's place in W, with its standard deviation.
 struct HandReading {
   double time_s = 0;
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();

@@ -59,6 +59,7 @@ enum class HeadDevice {
   kKinect,  ///< The head of a Kinect's skeleton: late, with white noise and a slow offset.
 };
 
+/// Errors of a tracker of the head.
 struct HeadErrors {
   double noise_m = 0.01;  ///< White, along each axis; of kSphere.
   /// For kSphere: how far above the middle of the head the cap has it in the mean, and a standard
@@ -69,6 +70,7 @@ struct HeadErrors {
   double t_pose_sd_m = 0.02;
 };
 
+/// A simulated tracker of the head.
 class HeadTracker {
  public:
   /// `step_s` between frames.
@@ -96,6 +98,7 @@ struct BeltErrors {
   double slip_s = 0.5;
 };
 
+/// A simulated Wiimote with MotionPlus on a belt.
 class Belt {
  public:
   Belt(const virtual_sensors::Scene& scene, const BeltErrors& errors, std::uint64_t seed);

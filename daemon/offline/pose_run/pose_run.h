@@ -42,6 +42,7 @@ enum class HandDevice {
   kKinect,   ///< Places 30 times a second, late, with white noise and a slow offset.
 };
 
+/// Person, devices and their errors in a simulated run.
 struct Settings {
   double mass_kg = 75;
   std::optional<double> height_m = std::nullopt;
@@ -71,6 +72,7 @@ struct Settings {
 using ArmReadings =
     std::array<std::array<std::vector<arms::HandReading>, arms::kPlaces>, arms::kArms>;
 
+/// True load, COP and joints of a foot, W.
 struct TrueFoot {
   double load_n = 0;
   Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
@@ -78,6 +80,7 @@ struct TrueFoot {
   Eigen::Vector3d toe_m = Eigen::Vector3d::Zero();
 };
 
+/// One frame: the reconstruction's inputs beside the true pose.
 struct Frame {
   reconstruction::Inputs inputs;
   Eigen::VectorXd q;
@@ -96,6 +99,7 @@ struct Activities {
   std::vector<int> of_frame;  ///< Index of a name, or -1; empty: not given.
 };
 
+/// A simulated run of a person, frame by frame.
 struct PoseRun {
   body::Body body;
   double rate_hz = 60;
@@ -160,6 +164,7 @@ struct Crouch {
 /// `from` where it never bends or stands.
 Crouch DeepestCrouch(const PoseRun& run, std::size_t from);
 
+/// One frame: insoles and hands beside the true pose and loads.
 struct InsoleFrame {
   reconstruction::InsoleInputs inputs;
   Eigen::VectorXd q;

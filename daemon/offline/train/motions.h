@@ -27,6 +27,7 @@ struct Clip {
 /// the T-pose: motion that two boards can be under.
 bool StaysInPlace(const Clip& clip);
 
+/// Folders of motion files, and subjects to leave out.
 struct MotionOptions {
   std::vector<std::string> folders;
   std::vector<std::string> exclude;  ///< Subjects.
@@ -34,6 +35,7 @@ struct MotionOptions {
 
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
 
+/// Motions for training, and those held back.
 struct Clips {
   std::vector<Clip> train;
   std::vector<Clip> excluded;  ///< Clips of the excluded subjects: to test on, never to train on.
@@ -57,6 +59,7 @@ Result<Clips> ReadClips(const MotionOptions& options);
 /// The data files of a model: those of the training.
 std::vector<model::DataFile> DataFiles(const std::vector<Clip>& clips);
 
+/// A basis of poses, with the number of poses that it is computed from.
 struct TrainedBasis {
   learning::PoseBasis basis;
   Eigen::Index poses = 0;

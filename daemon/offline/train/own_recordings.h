@@ -54,6 +54,7 @@ Result<TrainingSet> ReadTrainingSet(const MotionOptions& motions, const OwnOptio
 /// {"own": {...}} into the report of a command; nothing where there is none of it.
 void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report);
 
+/// A session read from a recording.
 struct Recording {
   learning::RecordedSession session;
   model::DataFile file;

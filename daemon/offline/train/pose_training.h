@@ -55,6 +55,7 @@ Result<void> CheckFree(const ModelOptions& options);
 model::Model NewModel(const std::string& kind, const Shared& shared, const ModelOptions& options,
                       std::vector<model::DataFile> data, std::vector<std::string> subjects);
 
+/// Writes the model file; refuses to replace one without `force`.
 Result<void> WriteModel(const model::Model& model, const ModelOptions& options);
 
 /// Writes the model, then the report of it to standard output; the program's exit code.
@@ -113,6 +114,7 @@ struct DataOptions {
 
 void AddDataOptions(CLI::App& command, DataOptions& options);
 
+/// Rows of a table for training and validation.
 struct TrainingData {
   learning::Split split;
   model::DataFile file;
@@ -122,6 +124,7 @@ struct TrainingData {
 /// Refuses an existing model before anything is trained.
 Result<TrainingData> Load(const DataOptions& options);
 
+/// A CSV file's numbers with its columns' names.
 struct Table {
   std::vector<std::string> columns;
   Eigen::MatrixXd values;  ///< A row each.

@@ -43,6 +43,7 @@ struct Wanted {
 /// walking: 0.6 s and 0.1 s for each m/s, which their medians are from 3.5 to 6 m/s.
 Wanted WantedOf(const Task& task, double height_m);
 
+/// Cost of one trial of a task.
 Cost CostOf(const Task& task, const TrialResult& result);
 
 /// One iteration of a search, for the plot.
@@ -156,6 +157,7 @@ class Team {
   std::vector<gait::GainSet> others_;
 };
 
+/// Sums up the costs of a set of trials.
 Score ScoreOf(const std::vector<Cost>& costs);
 
 /// Mean difference of the totals, trial by trial, and the half width of its 95 % interval.

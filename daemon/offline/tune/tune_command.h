@@ -12,6 +12,7 @@
 
 namespace footing::tune {
 
+/// Options of footing-tune's command line.
 struct Options {
   std::string gait;
   std::vector<double> speeds_mps;
@@ -54,6 +55,7 @@ std::string TableText(const Options& options, const std::vector<gait::GainSet>& 
 /// The objective over the iterations, as SVG.
 std::string Plot(const Options& options, const std::vector<SearchState>& searches);
 
+/// The report of a run, as --json prints it.
 nlohmann::ordered_json ReportOf(const Options& options, const std::vector<Dimension>& dimensions,
                                 const std::vector<TunedSet>& tuned);
 

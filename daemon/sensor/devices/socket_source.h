@@ -75,6 +75,7 @@ class SocketSource : public DeviceSource {
 std::string OutputMessage(std::uint32_t slot, const reports::OutputReport& report);
 /// Asks for a feature report of `size` bytes, id included.
 std::string FeatureRequestMessage(std::uint32_t slot, std::uint8_t id, std::size_t size);
+/// Tells the sender that its device is refused, and why.
 std::string RefusedMessage(std::uint32_t slot, const std::string& why);
 
 /// A connection to the device socket, and what it has attached.

@@ -31,6 +31,7 @@ using stream::kProductZcm2;
 using stream::kVendorNintendo;
 using stream::kVendorSony;
 
+/// Names and numbers by which a device is known.
 struct DeviceIdentity {
   Bus bus = Bus::kUnknown;
   std::uint32_t vendor = 0;
@@ -44,6 +45,7 @@ struct DeviceIdentity {
   stream::DeviceRole wished_role = stream::DeviceRole::kUnspecified;
 };
 
+/// One report of a device, as received.
 struct IncomingReport {
   std::int64_t received_ns = 0;
   std::span<const std::uint8_t> bytes;  ///< Valid during the call.
@@ -67,6 +69,7 @@ struct SourceHandlers {
   std::function<void(const std::string& line)> on_trouble;
 };
 
+/// A source of devices: hidraw nodes, or the device socket. Calls the handlers on the I/O thread.
 class DeviceSource {
  public:
   virtual ~DeviceSource() = default;

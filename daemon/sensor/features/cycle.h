@@ -52,6 +52,7 @@ SwingLine FindSwing(const Eigen::Matrix<double, Eigen::Dynamic, 3>& samples,
 /// to the others, never nearer to zero than the end of the range.
 Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& config);
 
+/// Inclination of a controller from the direction of gravity.
 struct Inclination {
   double roll_rad = 0;   ///< asin(ax / g): left side higher is positive.
   double pitch_rad = 0;  ///< asin(ay / g): front higher is positive.
@@ -106,6 +107,7 @@ struct Phase {
   double candidate_age_s = 0;  ///< and has been seen for this time.
 };
 
+/// The phase after a new estimate, `elapsed_s` after the one before.
 Phase Next(const Phase& before, const PhaseEstimate& estimate, double period_s, double elapsed_s,
            const PhaseConfig& config);
 

@@ -28,6 +28,7 @@
 /// is refined between grid points and over several cycles.
 namespace footing::features {
 
+/// Period of a limb's swing by its autocorrelation.
 struct PeriodEstimate {
   bool found = false;
   double period_s = 0;

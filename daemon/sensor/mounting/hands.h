@@ -36,9 +36,11 @@ std::string Problem(const stream::ContactFrame& frame);
 std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::int64_t received_ns,
                                           const std::string& default_rig);
 
+/// The published form of an insole's frame, with the rig filled in.
 stream::ContactSample ToSample(const stream::ContactFrame& frame, std::int64_t received_ns,
                                const std::string& default_rig);
 
+/// The published form of a reference frame, with the rig filled in.
 stream::ReferencePose ToPose(const stream::ReferenceFrame& frame, std::int64_t received_ns,
                              const std::string& default_rig);
 

@@ -29,6 +29,7 @@
 /// Right sign matters: turned half about, a limb's phase would be off by half a cycle.
 namespace footing::mounting {
 
+/// Limits that the stretches of a mounting procedure must keep.
 struct MountingConfig {
   double least_still_s = 1.8;
   double least_steps_s = 1.0;
@@ -49,6 +50,7 @@ struct MountingConfig {
   double most_residual_rad = 0.2;  ///< 11.5 degrees.
 };
 
+/// Result of the mounting procedure: the rotation from S to M, or why it was refused.
 struct Mounting {
   bool ok = false;
   std::string problem;                                              ///< Why it was refused.
@@ -69,6 +71,7 @@ Mounting SolveMounting(stream::DeviceRole role, std::span<const stream::MotionSa
 stream::MotionSample Rotated(const Eigen::Quaterniond& rotation_MS,
                              const stream::MotionSample& sample);
 
+/// Thresholds at which a mounted sensor counts as slipped.
 struct SlipConfig {
   double rest_sd_mps2 = 0.5;  ///< Over one second; below it the sensor is at rest.
   double rest_s = 3;          ///< Time at rest in the wrong direction.

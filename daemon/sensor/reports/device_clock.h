@@ -6,6 +6,7 @@
 
 namespace footing::link {
 
+/// Settings of the fit of a sensor's own ticks.
 struct SampleTicksConfig {
   double nominal_period_s = 0.01;  ///< Period of the sensor, not of its reports.
   double window_s = 8;             ///< Time that the fit looks back on.
@@ -81,6 +82,7 @@ class SampleTicks {
   std::int64_t proved_ns_ = 0;  // When the last good fit was.
 };
 
+/// Settings of the loop that estimates sample times.
 struct DeviceClockConfig {
   double nominal_period_s = 0.01;  ///< Period of reports.
   double sensor_period_s = 0;      ///< Period of new samples; 0: as the reports.

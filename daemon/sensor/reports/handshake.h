@@ -71,6 +71,7 @@ bool EndsWithAcknowledgement(Step step);
 /// Id of the report that such a step's acknowledgement names.
 std::uint8_t AcknowledgedReport(Step step);
 
+/// Timeouts of the questions of a handshake.
 struct QuestionConfig {
   double reply_timeout_s = 0.5;  ///< A status or memory read not answered is asked again.
   double ack_timeout_s = 0.2;    ///< Some devices never acknowledge a write.

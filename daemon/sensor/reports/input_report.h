@@ -92,6 +92,7 @@ struct Data {
   Bytes camera() const { return Bytes(camera_bytes.data(), camera_size); }
 };
 
+/// A decoded input report.
 struct InputReport {
   bool has_buttons = false;
   std::uint16_t buttons = 0;  ///< Accelerometer bits masked.
@@ -144,6 +145,7 @@ Extension IdentifyExtension(Bytes id);
 enum Corner : std::size_t { kTopRight = 0, kBottomRight = 1, kTopLeft = 2, kBottomLeft = 3 };
 inline constexpr std::size_t kCorners = 4;
 
+/// Raw values of a Balance Board's cells.
 struct BoardCounts {
   std::array<std::uint16_t, kCorners> corners{};
   bool has_temperature = false;
@@ -161,6 +163,7 @@ double BoardBatteryFraction(std::uint8_t raw);
 /// Every extension's data is six bytes; a report may carry more, which are padding.
 inline constexpr std::size_t kExtensionDataBytes = 6;
 
+/// Raw values of a Nunchuk.
 struct NunchukCounts {
   std::uint8_t stick_x = 0;                     ///< Rises to the right.
   std::uint8_t stick_y = 0;                     ///< Rises to the front.
@@ -193,6 +196,7 @@ enum ClassicButton : std::uint16_t {
   kClassicZl = 0x0080,
 };
 
+/// Raw values of a Classic Controller.
 struct ClassicCounts {
   std::uint8_t left_x = 0;  ///< 6 bits; sticks rise to the right and to the front.
   std::uint8_t left_y = 0;
@@ -220,6 +224,7 @@ PassedPacket PacketOf(Bytes extension);
 /// Order of the axes in packets and calibration.
 enum MotionPlusAxis : std::size_t { kYaw = 0, kRoll = 1, kPitch = 2 };
 
+/// Raw values of a MotionPlus' gyroscope.
 struct MotionPlusCounts {
   std::array<std::uint16_t, 3> counts{};  ///< In the order of MotionPlusAxis, 14 bits.
   std::array<bool, 3> slow{};             ///< The axis uses its slow (fine) range in this packet.

@@ -54,6 +54,7 @@ constexpr std::size_t MoveBlobBytes(reports::MoveModel model) {
   return MoveBlobPieces(model) * (reports::kMoveCalibrationFeatureBytes - 2) + 2;
 }
 
+/// Zeros and gains of a PS Move's sensors.
 struct MoveCalibration {
   /// Per raw axis: value = (raw - zero) * gain.
   std::array<double, 3> acceleration_zero_counts{};
@@ -75,6 +76,7 @@ MoveCalibration DefaultMove(reports::MoveModel model);
 /// kStored: the caller says so.
 MoveCalibration ParseMove(reports::MoveModel model, reports::Bytes blob);
 
+/// One PS Move sample in SI units, frame S.
 struct MoveReading {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();

@@ -127,6 +127,7 @@ class ExtensionPort {
   std::int64_t disturbed_until_ns_ = 0;
 };
 
+/// Times after which the data mode is set again.
 struct KeepAliveConfig {
   /// A status report stops the data, or makes the kernel's driver set a mode of its own at once:
   /// the mode is set again so soon after it ...
@@ -252,6 +253,7 @@ class StatusWatch {
   std::int64_t asked_ns_ = 0;
 };
 
+/// Settings of the handshake with a Wiimote.
 struct HandshakeConfig {
   bool motion_plus = true;       ///< Look for one and use it.
   bool camera = false;           ///< Switch the infrared camera on.

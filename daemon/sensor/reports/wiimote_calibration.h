@@ -32,6 +32,7 @@
 /// y = backward - forward, z = up - down) and Unity's WiimoteApi say the same.
 namespace footing::calibration {
 
+/// Zeros and 1 g readings of a Wiimote's accelerometer.
 struct AccelerationCalibration {
   std::array<int, 3> zero_counts{0x200, 0x200, 0x200};   ///< Counts of 10 bits, raw axes.
   std::array<int, 3> one_g_counts{0x268, 0x268, 0x268};  ///< Above zero_counts by 60 to 160.
@@ -47,6 +48,7 @@ inline constexpr std::size_t kAccelerationBlockBytes = 10;
 /// nine bytes + 0x55) is right and its numbers are possible, so never a division by zero.
 AccelerationCalibration ParseAcceleration(reports::Bytes blocks);
 
+/// Specific force in SI units, frame S.
 struct Acceleration {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   std::uint32_t clipped_axes = 0;  ///< Bits 0, 1, 2: x, y, z at the end of the count range.
@@ -153,6 +155,7 @@ inline constexpr std::uint16_t kMotionPlusBlockBytes = 32;
 /// typical values and the problem by name.
 MotionPlusCalibration ParseMotionPlus(reports::Bytes block);
 
+/// Angular velocity in SI units, frame S.
 struct GyroscopeReading {
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
   bool clipped = false;  ///< An axis is at the end of its 14 bits.
@@ -202,6 +205,7 @@ inline constexpr std::uint16_t kNunchukBlockBytes = 16;
 /// keeps its accelerometer, takes a typical stick and says so.
 NunchukCalibration ParseNunchuk(reports::Bytes blocks);
 
+/// Stick and specific force of a Nunchuk, in its frame S.
 struct NunchukReading {
   double stick_x = 0;  ///< -1 left to 1 right.
   double stick_y = 0;  ///< -1 back to 1 front.
@@ -209,6 +213,7 @@ struct NunchukReading {
   std::uint32_t clipped_axes = 0;  ///< Bits 0, 1, 2: x, y, z at the end of the count range.
 };
 
+/// Converts counts to SI units.
 NunchukReading Calibrate(const NunchukCalibration& calibration,
                          const reports::NunchukCounts& counts);
 

@@ -89,6 +89,7 @@ class MotionChain {
   Eigen::Vector3d filtered_mps2_ = Eigen::Vector3d::Zero();
 };
 
+/// Times of the mounting procedure's parts: standing still, then steps.
 struct MountingStretches {
   std::int64_t still_from_ns = 0;
   std::int64_t still_to_ns = 0;

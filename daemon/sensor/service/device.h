@@ -127,6 +127,7 @@ inline constexpr std::size_t kMaxReferencesPerTick = 64;
 /// And of contact samples, which are some 0.7 KiB.
 inline constexpr std::size_t kMaxContactsPerTick = 128;
 
+/// Settings of a device's decoding and its board.
 struct DeviceOptions {
   board::PlateConfig plate;
   decode::KindOptions kind;

@@ -40,6 +40,7 @@ std::optional<Content> Load(const Storage& storage, const std::string& name,
   return std::nullopt;
 }
 
+/// A mounting as stored (mounting::Mounting).
 struct StoredMounting {
   std::string role;  ///< "rig/role" that it was found for; stale on another.
   Eigen::Quaterniond rotation_MS = Eigen::Quaterniond::Identity();
@@ -47,6 +48,7 @@ struct StoredMounting {
   bool slipped = false;  ///< Since it was found.
 };
 
+/// A tare as stored (tare::Tare).
 struct StoredTare {
   board::CornerForces offset;
   double residual_n = 0;

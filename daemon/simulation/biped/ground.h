@@ -60,8 +60,10 @@ GroundWindow WindowOf(const stream::Track& track);
 
 /// Far below everything: where a box waits that no segment needs.
 GroundBox WaitingBox(int index);
+/// Name of the geom of a box, for MuJoCo.
 std::string GroundBoxName(int index);
 
+/// The ground in MJCF.
 struct GroundText {
   std::string mjcf;
   std::vector<std::string> names;  ///< Names of its geoms, in their order.

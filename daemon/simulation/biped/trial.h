@@ -20,6 +20,7 @@ inline constexpr double kStoppedMps = 0.3;
 /// moment too early has still made the transition.
 inline constexpr double kEarlyS = 1.0;
 
+/// State of a trial. A plain value.
 struct TrialMemory {
   stream::TrialPhase phase = stream::TrialPhase::kReady;
   double started_s = 0;  ///< When the start line was crossed.

@@ -25,6 +25,7 @@ struct GainText {
   std::string origin;  ///< Names the file in errors.
   std::string text;
 };
+/// Data files of the engine, as text.
 struct EngineTexts {
   std::string biped;    ///< kBipedFile
   std::string track;    ///< "tracks/NAME.json"
@@ -39,6 +40,7 @@ inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gait
                                        "gaits/jump.csv"};
 static_assert(kGainFiles.size() == stream::kGaits.size(), "a table of gains for every gait");
 
+/// Settings of the engine.
 struct EngineConfig {
   double step_s = 0.001;            ///< Step of physics and control, (0, 0.002].
   double fall_shown_s = 0.7;        ///< From a fall to the put-back.
@@ -84,6 +86,7 @@ struct EngineInputs {
   TrialInputs trial;
 };
 
+/// Kinds of events.
 enum class EventKind {
   kFall,  ///< A failure of any cause.
   kPutBack,
@@ -101,6 +104,7 @@ enum class EventKind {
   kTaskDone,  ///< The change of gait that the track asks for has succeeded.
 };
 
+/// An event of one step. Fixed size.
 struct EngineEvent {
   EventKind kind = EventKind::kFall;
   stream::Gait from = stream::Gait::kUnspecified;
@@ -133,6 +137,7 @@ struct AppendProgress {
   bool added = false;        ///< In this step: the track's last segment is new.
 };
 
+/// State of the character after a step, in W. Fixed size.
 struct EngineOutput {
   std::uint64_t step = 0;
   double time_s = 0;  ///< step * step_s.

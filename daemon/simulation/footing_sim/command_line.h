@@ -31,6 +31,7 @@ Result<void> Check(const Config& config);
 /// engine that does not run.
 Result<void> CheckApply(const Config& config, const std::vector<std::string>& settings);
 
+/// Request on the command line.
 struct CommandLine {
   Config config;
   bool json = false;  ///< Print the listening addresses as one JSON object.

@@ -19,6 +19,7 @@
 /// The paper writes angles of the leg; an offset divided by the leg's length is that angle.
 namespace footing::gait {
 
+/// Planned foothold of the swing leg, W.
 struct WalkingFoothold {
   Eigen::Vector3d p_WF_m = Eigen::Vector3d::Zero();
   double hurry = 0;                   ///< [0, 1): fraction by which the swing clock should gain.

@@ -108,6 +108,7 @@ inline constexpr std::array<Arrow<RunningPhase, RunningCues>, 5> kRunningArrows{
      "leg at its thrust length, or off the ground"},
 }};
 
+/// The phase that follows by the tables above.
 WalkingPhase Next(WalkingPhase phase, const WalkingCues& cues);
 RunningPhase Next(RunningPhase phase, const RunningCues& cues);
 

@@ -45,6 +45,7 @@ struct AttitudeGains {
   double turning_limit_nm = 8;           ///< By fore-aft forces of both feet.
 };
 
+/// Gains of walking and stepping.
 struct WalkingGains {
   double swing_time_s = 0.32;  ///< Rise and Fall.
   double double_support_time_s = 0.05;
@@ -185,6 +186,7 @@ struct AnticipationGains {
   double crouch_m = 0.03;
 };
 
+/// All gains of one gait at one speed.
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;

@@ -10,6 +10,7 @@
 /// are shifted only by what is left over.
 namespace footing::gait {
 
+/// A pit on the way, distances along the heading.
 struct PitAhead {
   double near_m = 0;  ///< From the foothold to the near edge; negative behind it.
   double far_m = 0;
@@ -47,6 +48,7 @@ struct Thrust {
 
 inline constexpr int kStridesMax = 4;  ///< Planned before the last foothold.
 
+/// Limits of the hops up to a pit and over it.
 struct PitLimits {
   double edge_margin_m = 0.06;     ///< From the foothold to the near edge.
   double landing_margin_m = 0.14;  ///< From the far edge to the foothold.
@@ -56,6 +58,7 @@ struct PitLimits {
   double leap_max_mps = 3.2;      ///< Limit for the hop over the pit.
 };
 
+/// Plan of the hops up to a pit and over it.
 struct PitPlan {
   bool leaps = false;       ///< The hop from this foothold crosses the pit.
   bool reaches = false;     ///< The plan stays within its limits.
@@ -88,6 +91,7 @@ struct WalkAhead {
   double stride_m = 0;   ///< v_d T, from foothold to foothold.
 };
 
+/// Limits of the strides up to a pit and over it.
 struct WalkLimits {
   double near_margin_m = 0.06;  ///< From the last foothold's centre to the near edge.
   double far_margin_m = 0.04;   ///< From the far edge to the first foothold behind it.

@@ -27,6 +27,7 @@ struct AxialTarget {
   double share = 1;
 };
 
+/// Tasks of a leg's hips and length.
 enum class LegTask {
   kPlace,      ///< Hips and length bring the foot to r_HF_W.
   kPlaceHips,  ///< Hips aim the foot along r_HF_W, the length follows `axial`.
@@ -34,6 +35,7 @@ enum class LegTask {
   kFree,       ///< Hips are damped only, the length follows `axial`.
 };
 
+/// Target of one leg.
 struct LegTarget {
   LegTask task = LegTask::kFree;
   Eigen::Vector3d r_HF_W_m = Eigen::Vector3d::Zero();  ///< From the hip to where the foot is to be.
@@ -208,6 +210,7 @@ inline Eigen::Vector3d ToHeading(double heading_rad, const Eigen::Vector3d& a_W)
   return {c * a_W.x() + s * a_W.y(), -s * a_W.x() + c * a_W.y(), a_W.z()};
 }
 
+/// From the heading frame H to W.
 inline Eigen::Vector3d ToWorld(double heading_rad, const Eigen::Vector3d& a_H) {
   return ToHeading(-heading_rad, a_H);
 }

@@ -67,6 +67,7 @@ std::string TableIn(const v1::EffectiveConfig& message, std::uint64_t interface_
 
 namespace footing::engine_files {
 
+/// Track, interface and tables whose files ReadTexts reads.
 struct Wish {
   std::string track = "plain";  ///< Name of a built-in track, or a path.
   stream::UserInterface interface = stream::UserInterface::kWrist;

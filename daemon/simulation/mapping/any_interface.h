@@ -26,6 +26,7 @@ inline constexpr const char* kLegMappingFile = "leg_mapping.json";
 /// Every key, nothing unknown, all in range. `origin` names the file.
 Result<LegMapping> ParseLegMapping(const std::string& text, const std::string& origin);
 
+/// Options of the leg interface.
 struct LegOptions {
   stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< kHead, kFeet or kTrunk.
   /// The picture follows the head; the table may choose that, too.

@@ -81,6 +81,7 @@ double ElbowError(const ArmDirections& a, const ArmDirections& b);
 inline constexpr int kDirections = 9;
 using Directions = Eigen::Matrix<double, kDirections, 1>;
 
+/// The three directions in one vector.
 Directions Stacked(const ArmDirections& arm);
 /// The same as unit vectors; those of a T-pose where the numbers have no direction.
 ArmDirections Of(const Directions& stacked);

@@ -29,6 +29,7 @@ struct PoseBasis {
   int size() const { return static_cast<int>(sd.size()); }
 };
 
+/// Options of a basis of poses.
 struct BasisOptions {
   /// A metre of the root counts as so many radians.
   double translation_weight = 2.5;
@@ -86,6 +87,7 @@ class PoseUpdate {
   Eigen::VectorXd innovation_;
 };
 
+/// Options of the Gauss-Newton solver.
 struct GaussNewtonOptions {
   int iterations = 3;
   int first_iterations = 30;  ///< For the first frame, which starts at the prior's mean.
@@ -156,6 +158,7 @@ class GaussNewton {
   Eigen::VectorXd whitened_;
 };
 
+/// Options of the paper's solver, a Fibonacci search along each component.
 struct FibonacciOptions {
   int evaluations = 8;  ///< For equation (6), a component: 1/34 of the interval is found.
   int sweeps = 1;

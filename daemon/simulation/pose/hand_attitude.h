@@ -102,7 +102,7 @@ class AttitudeFilter {
   AttitudeOptions options_;
   Eigen::Matrix3d R_GS_ = Eigen::Matrix3d::Identity();  ///< G: kept by the gyroscope alone.
   Eigen::Matrix3d R_WG_ = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d start_bias_S_ = Eigen::Vector3d::Zero();  ///< Start; taken off at once.
+  Eigen::Vector3d start_bias_S_ = Eigen::Vector3d::Zero();  ///< Bias at start; taken off at once.
   Errors errors_ = Errors::Zero();  ///< Rest of the bias, at most 2 deg/s each; the gains.
   Eigen::Matrix<double, 6, 6> variance_ = Eigen::Matrix<double, 6, 6>::Zero();  ///< For errors_.
   LowPass<Eigen::Vector3d> force_G_;

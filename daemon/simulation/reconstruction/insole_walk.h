@@ -58,6 +58,7 @@ struct InsoleFoot {
 /// Sum of the cells' loads; 0 when nothing is known of them or they are not finite.
 double TotalLoadN(const InsoleFoot& foot);
 
+/// Measurements of insoles and hands in one frame.
 struct InsoleInputs {
   double time_s = 0;
   std::array<InsoleFoot, momentum::kFeet> feet;

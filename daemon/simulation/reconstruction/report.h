@@ -17,6 +17,7 @@
 
 namespace footing::reconstruction {
 
+/// Times and distances of a shown foot's lock to the ground.
 struct FootLockConfig {
   double ease_s = 0.1;     ///< From where the foot was shown to where it landed (section 4.4).
   double free_s = 0.15;    ///< The estimate is followed for this time after a landing,

@@ -128,6 +128,7 @@ struct WalkPrior {
   std::optional<Com> com;  ///< Where the hands show the place of the body.
 };
 
+/// The product's own mode, and the pose paper's.
 enum class Mode { kBest, kPaper };
 
 /// Standard deviations and weights of the best mode's terms.
@@ -155,6 +156,7 @@ struct BestConstants {
   double aloft_time_s = 0.2;
 };
 
+/// Options of a reconstruction.
 struct Options {
   Mode mode = Mode::kBest;
   double rate_hz = 120;  ///< Frames a second.
@@ -171,6 +173,7 @@ struct Options {
   int lag_steps() const;
 };
 
+/// UsageError that names an option out of range.
 Result<void> CheckOptions(const Options& options);
 
 /// Options for the solver over the basis of all poses, and over the errors of the regression.
@@ -212,6 +215,7 @@ Result<SubjectModel> PaperSubjectModel(const body::Body& body, const Models& mod
 Result<SubjectModel> WalkSubjectModel(const body::Body& body, const Models& models,
                                       const Options& options);
 
+/// Inverse kinematics of one leg.
 pose::LegIk LegOf(const SubjectModel& model, std::size_t foot);
 
 /// Where in W the basis has the origin of its poses: below the middle of the feet of the T-pose.
