@@ -74,6 +74,7 @@ class DeviceSource {
  public:
   virtual ~DeviceSource() = default;
 
+  /// Looks for devices from now on; an error says what cannot be opened.
   virtual Result<void> Start() = 0;
   /// Writes one output report; the caller keeps to one per 10 ms and device. Unknown handles are
   /// ignored: the device may be gone already.

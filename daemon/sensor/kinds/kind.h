@@ -46,28 +46,33 @@ class Kind {
 
   /// A new uninterrupted stream begins.
   void Restart();
+  /// Time passes: steps of the handshake that are due go to `outputs`.
   void Advance(std::int64_t now_ns, Outputs& outputs);
   /// The samples of one input report, if any; none when it makes no sense.
   std::optional<decode::Decoded> Take(std::int64_t received_ns, reports::Bytes report,
                                       Outputs& outputs);
   /// The next report to write, if one is due.
   std::optional<reports::OutputReport> NextOutput(std::int64_t now_ns, link::Outbox& outbox);
+  /// The report that switches the motor off at once.
   reports::OutputReport MotorOff() const;
 
+  /// A second link to the same device is taken too: its calibration may be readable there.
   bool has_second_link() const;
   void TakeSecondLink();
   std::optional<decode::FeatureRequest> NextFeature(std::int64_t now_ns);
   /// A whole calibration to be stored, when this feature report completed it.
   Stored TakeFeature(reports::Bytes feature);
 
+  /// Whether its lamps can show the role.
   bool has_lamps() const;
   /// False for kinds that do not have it.
   bool SetSphere(std::uint32_t rgb);
   bool SetCamera(bool on);
   bool RequestStatus(std::int64_t now_ns);
 
+  /// Adds the kind's part to the status.
   void AddTo(stream::DeviceStatus& status) const;
-  /// Text for a person: the trouble and what to do; empty when all is well.
+  /// Text for a person: the problem and what to do; empty when all is well.
   std::string Note(std::int64_t now_ns) const;
 
   const Alternatives& alternatives() const { return alternatives_; }

@@ -143,6 +143,7 @@ class LinkStatistics {
 
   /// 0 when nothing came for `now_ns` - one second.
   double RateHz(std::int64_t now_ns) const;
+  /// Standard deviation of the interval between reports, ms.
   double JitterMs() const;
   std::uint64_t reports() const { return reports_; }
   std::uint64_t gaps() const { return gaps_; }

@@ -322,8 +322,8 @@ class HandshakeSequencer {
   /// The newest status report.
   const std::optional<reports::Status>& status() const { return status_.newest; }
   std::uint64_t mode_reasserts() const { return keep_alive_.reasserts(); }
-  /// Text for a person: trouble with the link, or with a remote's calibration and accessories, and
-  /// what to do; empty when all is well.
+  /// Text for a person: a problem with the link, or with a remote's calibration and accessories,
+  /// and what to do; empty when all is well.
   std::string Note(std::int64_t now_ns) const;
 
  private:

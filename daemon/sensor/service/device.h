@@ -166,6 +166,7 @@ class Device {
   /// A calibration blob that was just read from the device, to be stored by its serial; once.
   Stored TakeFreshCalibration();
 
+  /// The published status; without samples for `stale_after_s` the device is stale.
   stream::DeviceStatus Status(std::int64_t now_ns, double stale_after_s) const;
 
   std::uint32_t number() const { return number_; }

@@ -80,18 +80,22 @@ class SetupStore {
   /// An empty role forgets it.
   void SetRole(const std::string& serial, const std::string& role);
 
+  /// Tare of the board; none if none is stored.
   std::optional<StoredTare> TareOf(const std::string& serial) const;
+  /// Stores the tare; none forgets it.
   void SetTare(const std::string& serial, const std::optional<StoredTare>& tare);
 
   /// Only when it was found for this "rig/role".
   std::optional<StoredMounting> MountingOf(const std::string& serial,
                                            const std::string& role) const;
+  /// Stores the mounting; none forgets it.
   void SetMounting(const std::string& serial, const std::optional<StoredMounting>& mounting);
 
   /// False when there are too many rigs already.
   bool SetLayout(const stream::BoardLayout& layout);
   /// Replaces the item of that name and serial. False when there are too many already.
   bool Record(const std::string& rig, const stream::SetupItem& item);
+  /// Removes the item of that name and serial.
   void Forget(const std::string& rig, const std::string& name, const std::string& serial);
   /// Marks items of that name (of all serials if `serial` is empty) as to be redone.
   void MarkStale(const std::string& rig, const std::string& name, const std::string& serial,
@@ -104,6 +108,7 @@ class SetupStore {
   bool Moved(const std::string& serial) const { return moved_.contains(serial); }
   void SetMoved(const std::string& serial, bool moved);
 
+  /// The set-up of all rigs, to be published.
   std::vector<stream::RigSetup> Rigs() const;
   /// Grows with every change: what was published before is old.
   std::uint64_t revision() const { return revision_; }
@@ -131,6 +136,7 @@ class CalibrationStore {
 
   /// None if none was saved for this device, or what was saved is refused.
   std::optional<std::vector<std::uint8_t>> Load(const std::string& serial) const;
+  /// Saves the calibration in place of an earlier one.
   void Save(const std::string& serial, const std::vector<std::uint8_t>& bytes) const;
 
  private:

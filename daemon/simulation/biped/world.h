@@ -71,6 +71,7 @@ class World {
   World& operator=(World&&) noexcept;
   ~World();
 
+  /// Step of the physics.
   double step_s() const;
   double mass_kg() const;
 
@@ -84,6 +85,7 @@ class World {
   /// One step under joint efforts and a push on the root's COM. No other force is applied to the
   /// root: aborts should one be.
   void Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n);
+  /// Reads the present state, in W.
   const Observation& Observe() const;
   /// Origin and orientation of link `index` of WorldNames::links, in the world.
   void LinkPose(int index, Eigen::Vector3d& position_m, Eigen::Quaterniond& orientation) const;
@@ -92,6 +94,7 @@ class World {
   double root_force_max_n() const;
   /// FNV-1a over the words of position, velocity, activation and warm start.
   std::uint64_t StateHash() const;
+  /// Everything that changes with time, as a value, and back to it.
   WorldState Save() const;
   void Restore(const WorldState& state);
 

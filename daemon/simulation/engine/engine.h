@@ -185,6 +185,7 @@ class GaitEngine {
   /// As of the last step; valid until the next Advance or Restore.
   const EngineOutput& Output();
 
+  /// Skeleton of the character, and the track that it is on now.
   const stream::Skeleton& skeleton() const;
   const stream::Track& track() const;
 

@@ -69,6 +69,7 @@ class ArmTracker {
   /// Features of the last Advance; only when both fists are aligned.
   const ArmFeatures& features() const { return features_; }
   bool aligned() const { return hand(0).valid && hand(1).valid; }
+  /// Attitude of the device at that place, in W.
   const HandState& hand(std::size_t arm, Place place = Place::kFist) const {
     return devices_[arm][static_cast<std::size_t>(place)].state();
   }

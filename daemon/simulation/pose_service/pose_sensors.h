@@ -143,12 +143,15 @@ class PoseSensors {
   PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
               std::optional<arms::ArmModel> arm = std::nullopt);
 
+  /// Takes in a tick and hands the inputs over.
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
   /// Takes in the engine's report on its T-pose, frame by frame: Wiimotes are aligned by it.
   void Follow(const PoseFrame& frame) {
     arms_.Follow(frame.t_pose.complete, frame.t_pose.progress);
   }
+  /// Asks the engine for a new T-pose.
   void Calibrate();
+  /// Number of the subject that the next inputs are for.
   void TakeSubject(std::uint64_t number);
 
   const std::string& rig() const { return followed_rig_; }

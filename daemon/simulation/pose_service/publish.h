@@ -129,6 +129,7 @@ stream::Skeleton ToSkeleton(const body::Body& body);
 /// next subject, filters that were reset.
 class PoseEvents {
  public:
+  /// Events since the last call's frame.
   v1::Events Between(const PoseFrame& frame, const Subject& subject, std::int64_t now_ns);
 
  private:
@@ -150,7 +151,7 @@ inline constexpr double kMassTolerance = 0.03;
 /// Why there is no measurement of the hand of that side ("left").
 std::string HandText(HandTrouble trouble, const std::string& side);
 
-/// Text for a person: the trouble and what to do about it; empty when all is well.
+/// Text for a person: the problem and what to do about it; empty when all is well.
 std::string PoseNote(const PoseFrame& frame, const Subject& subject);
 
 }  // namespace footing::pose_service

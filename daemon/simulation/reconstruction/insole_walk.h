@@ -79,6 +79,7 @@ struct InsoleInputs {
 /// steps, without its momentum. A value that can be copied.
 class InsoleWalk {
  public:
+  /// UsageError for other modes than the best one, for a lag, and as Reconstruction::Create.
   static Result<InsoleWalk> Create(const body::Body& body, const Models& models,
                                    const Options& options);
 

@@ -23,6 +23,7 @@ namespace footing::reconstruction {
 /// the basis (motion::WithLandmarksOnly, body::StandardPerson).
 class Reconstruction {
  public:
+  /// UsageError when an option is out of range; InvalidData when the models do not fit the body.
   static Result<Reconstruction> Create(const body::Body& body, const Models& models,
                                        const Options& options);
 

@@ -67,6 +67,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
                  }}),
         monitor_(server_, line_->frame_rate_hz(), {"footing-sim", config.version}) {}
 
+  /// Opens the sockets, the metrics and the sensor client; an error names the address.
   Result<void> Open(boost::asio::io_context& io, const Config& config) {
     auto addresses = config.listen;
     if (addresses.empty()) {
@@ -113,20 +114,24 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     WaitForFrame();
   }
 
+  /// Takes over limits and access from a changed config; returns the settings whose files changed.
   Result<std::vector<std::string>> Reload(const Config& wanted) {
     auto changed_files = wanted.access.Reapply(server_);
     if (changed_files) server_.SetLimits(wanted.sessions);
     return changed_files;
   }
 
+  /// Name of the thread that is stuck; empty: none.
   std::string Stuck() const { return line_->thread().Stuck() ? "the simulation thread" : ""; }
 
+  /// Addresses on which it listens.
   std::vector<std::string> listening_on() const {
     std::vector<std::string> addresses;
     for (std::size_t i = 0; i < listening_; ++i) addresses.push_back(server_.ListeningOn(i).Text());
     return addresses;
   }
 
+  /// Ends all sessions with this reason, then calls `done`.
   void Stop(const std::string& reason, std::function<void()> done) {
     client_->Stop();
     line_->thread().Stop();
