@@ -21,7 +21,7 @@ struct FloorPlacement {
   double yaw_rad = 0;
   Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
   double rms_m = 0;         ///< Residual of the points that count.
-  Eigen::Index points = 0;  ///< That count.
+  Eigen::Index points = 0;  ///< Points that count.
 };
 
 /// Least squares of `from` on `to`, a column a pair, without the pairs that are left far off: feet

@@ -44,7 +44,7 @@ RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& 
                   int fold_count, const Eigen::VectorXd& output_scale,
                   const RandomWaves& waves = {}, const Eigen::VectorXd& weights = {});
 
-/// By what a pose is to be foreseen: hands and feet alone, or with the momentum too.
+/// Cues that a pose is predicted from: hands and feet alone, or with the momentum too.
 enum class PoseCues { kPosture, kMomentum };
 
 /// Training data of a pose regression: a column a frame.
@@ -53,7 +53,7 @@ struct PoseExamples {
   /// The root from the estimated centre of mass in parts of the root's height, then the angles.
   std::vector<Eigen::VectorXd> poses;
   std::vector<int> folds;  ///< Frames of one fold are predicted without it; from 0 on.
-  /// Whose frames they are: all people count alike, however long each was recorded. Frames of
+  /// Person of each frame: all people count alike, however long each was recorded. Frames of
   /// kOwn count once each.
   std::vector<int> people;
   static constexpr int kOwn = -1;
@@ -126,7 +126,7 @@ std::vector<float> ToFloats(const Eigen::MatrixXd& values);  ///< Column by colu
 struct PoseBasis {
   std::vector<std::string> dofs;  ///< Names of the pose's entries.
   Eigen::VectorXd mean;           ///< m and rad.
-  Eigen::VectorXd scale;          ///< By which an entry counts; a metre is as much as 2.5 rad.
+  Eigen::VectorXd scale;          ///< Weight of an entry; a metre is as much as 2.5 rad.
   Eigen::MatrixXd components;     ///< Rows of length 1, at right angles.
   Eigen::VectorXd variances;  ///< Variance of each component's a, divided by the number of poses.
 

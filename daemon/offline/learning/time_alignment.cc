@@ -66,8 +66,8 @@ std::vector<Stomp> FindStomps(const ForceTrace& trace) {
 namespace {
 
 constexpr double kCutoffHz = 6;     // Both are as smooth as Follow makes a motion's.
-constexpr double kIntervalS = 0.1;  // By which stomps may be off: 50 ms each.
-constexpr double kMatchS = 0.05;    // In the end.
+constexpr double kIntervalS = 0.1;  // Between matching stomps in the search: 50 ms each.
+constexpr double kMatchS = 0.05;    // Between matching stomps in the result.
 constexpr double kLeastOverlapS = 5;
 constexpr std::size_t kMostCandidates = 400;
 constexpr int kCoarseStride = 4;          // Samples skipped in the search.

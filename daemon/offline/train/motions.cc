@@ -210,9 +210,9 @@ using learning::LoadClip;
 
 constexpr const char* kAxes[] = {"x", "y"};
 constexpr double kValidationPart = 0.2;  // The end of every clip.
-constexpr std::size_t kRoundsKept = 3;   // Whose examples are trained on, beside those with noise.
-constexpr double kEnoughComS = 180;      // Motion that the paper trains on, s (section 4.2).
-constexpr double kRestartS = 10;         // Duration of a run on its own outputs in training.
+constexpr std::size_t kRoundsKept = 3;  // Newest rounds that are trained on, beside noisy examples.
+constexpr double kEnoughComS = 180;     // Motion that the paper trains on, s (section 4.2).
+constexpr double kRestartS = 10;        // Duration of a run on its own outputs in training.
 
 /// A hidden unit fits the people of the training: it makes the COM of a person left out worse
 /// forward (docs/models.md).

@@ -65,7 +65,7 @@ int Deliver(const model::Model& model, const ModelOptions& options,
 /// How poses are learned from clips: simulated sensors, the reconstruction's own estimators, and a
 /// regression on what these say.
 inline constexpr double kPosePieceS = 10;        ///< Frames of one piece are left out together.
-inline constexpr std::size_t kFewestPeople = 3;  ///< Whose errors show those of the next person.
+inline constexpr std::size_t kFewestPeople = 3;  ///< Fewer do not show a next person's errors.
 inline constexpr double kSettledS = 1.5;         ///< After the T-pose.
 
 /// A clip, or its mirror image, and how its random errors and pieces are numbered.

@@ -146,7 +146,7 @@ struct PitMemory {
   bool last_foothold = false;  ///< The coming foothold is the last one before it.
   bool leaping = false;        ///< This hop crosses it.
   double lift_off_mps = 0;  ///< Vertical, of this support when the pit wants another than the gait.
-  double shift_m = 0;       ///< By which the foothold in flight is moved along the heading.
+  double shift_m = 0;       ///< Shift of the foothold in flight along the heading.
 };
 
 /// A step of the ground that feet in flight keep clear of.

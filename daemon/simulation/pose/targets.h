@@ -13,7 +13,7 @@ namespace footing::pose {
 
 /// A point of the body that is known to be somewhere in W, or from the origin of another joint.
 struct PointTarget {
-  int joint = 0;                                    ///< Whose frame it is fixed to.
+  int joint = 0;                                    ///< Joint whose frame it is fixed to.
   Eigen::Vector3d p_J_m = Eigen::Vector3d::Zero();  ///< In that frame.
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where it should be.
   Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();   ///< Along W's axes, positive.

@@ -204,7 +204,7 @@ class PoseSensors {
   std::array<reconstruction::HandTrack, stream::kBodyJoints> joint_tracks_ =
       reconstruction::JointTracks();
   std::string tracker_;
-  std::string joint_tracker_;  ///< Whose joints are followed.
+  std::string joint_tracker_;  ///< Tracker whose joints are followed.
   std::int64_t joint_tracker_ns_ = 0;
   v1::SetupState setup_;  ///< As published last.
   stream::BoardLayout layout_;

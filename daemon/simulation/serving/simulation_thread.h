@@ -39,7 +39,7 @@ namespace footing::serving {
 struct Config {
   std::string sensor;               ///< Address of footingd; empty: the default one.
   std::vector<std::string> listen;  ///< Empty: the default one.
-  std::string rig;                  ///< Whose motion commands; empty: the first one that can.
+  std::string rig;                  ///< Rig whose motion commands; empty: the first that can.
   std::string data_folder;          ///< In place of the installed data.
   std::string metrics;              ///< Where metrics are served (MetricsEndpoint); empty: nowhere.
   transport::SessionLimits sessions;
