@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/board/geometry.h"
 #include "common/base/units.h"
+#include "common/board/geometry.h"
 
 namespace footing::board {
 namespace {

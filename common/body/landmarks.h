@@ -3,8 +3,8 @@
 #include <array>
 #include <string_view>
 
-#include "common/body/skeleton.h"
 #include "common/base/result.h"
+#include "common/body/skeleton.h"
 
 namespace footing::body {
 

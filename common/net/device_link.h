@@ -8,8 +8,8 @@
 #include <string>
 
 #include "common/base/result.h"
-#include "common/stream/hands.h"
 #include "common/net/address.h"
+#include "common/stream/hands.h"
 #include "footing/v1/device.pb.h"
 
 /// A client's side of footingd's device socket (docs/protocol.md).

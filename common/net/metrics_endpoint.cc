@@ -5,9 +5,9 @@
 #include <chrono>
 #include <utility>
 
-#include "common/runtime/timer.h"
 #include "common/net/listener.h"
 #include "common/net/socket.h"
+#include "common/runtime/timer.h"
 
 namespace footing::monitoring {
 namespace {

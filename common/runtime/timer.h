@@ -9,8 +9,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-/// Timers and event loops on the clock of common/runtime: the host's, or that of the timekeeper that
-/// the calling thread follows.
+/// Timers and event loops on the clock of common/runtime: the host's, or that of the timekeeper
+/// that the calling thread follows.
 namespace footing::timer {
 
 using TimePoint = std::chrono::steady_clock::time_point;

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/model/model.h"
 #include "common/base/result.h"
+#include "common/model/model.h"
 
 namespace footing::wire {
 

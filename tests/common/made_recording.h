@@ -2,9 +2,9 @@
 
 #include <string>
 
+#include "common/base/result.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/stream_recorder.h"
-#include "common/base/result.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::test {

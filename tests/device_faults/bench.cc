@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/runtime/clock.h"
 #include "common/net/address.h"
+#include "common/runtime/clock.h"
 
 namespace footing::device_faults {
 namespace {

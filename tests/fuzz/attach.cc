@@ -8,8 +8,8 @@
 #include <set>
 #include <string>
 
-#include "common/runtime/timer.h"
 #include "common/net/framing.h"
+#include "common/runtime/timer.h"
 #include "daemon/sensor/devices/socket_source.h"
 #include "footing/v1/device.pb.h"
 #include "tests/fuzz/message.h"

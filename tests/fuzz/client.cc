@@ -8,8 +8,8 @@
 #include <cstring>
 #include <string>
 
-#include "common/runtime/timer.h"
 #include "common/net/framing.h"
+#include "common/runtime/timer.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/simulated_time.h"
 

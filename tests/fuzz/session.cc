@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <string>
 
+#include "common/net/framing.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/timer.h"
-#include "common/net/framing.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/simulated_time.h"
 

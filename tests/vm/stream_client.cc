@@ -3,10 +3,10 @@
 #include <iostream>
 #include <string>
 
-#include "common/cli/cli.h"
-#include "common/runtime/clock.h"
-#include "common/net/client.h"
 #include "common/base/units.h"
+#include "common/cli/cli.h"
+#include "common/net/client.h"
+#include "common/runtime/clock.h"
 #include "tests/vm/tally.h"
 
 namespace footing::vm {

@@ -7,8 +7,8 @@
 
 #include "clients/view/render/gl.h"
 #include "clients/view/render/target.h"
-#include "common/runtime/clock.h"
 #include "common/base/units.h"
+#include "common/runtime/clock.h"
 
 namespace footing::view {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "common/body/kinematics.h"
-#include "common/body/landmarks.h"
 #include "common/base/rotation.h"
 #include "common/base/units.h"
+#include "common/body/kinematics.h"
+#include "common/body/landmarks.h"
 
 namespace footing::joint_angles {
 namespace {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "common/body/body.h"
 #include "common/base/result.h"
+#include "common/body/body.h"
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"

@@ -19,7 +19,7 @@ namespace {
 using body::Landmark;
 using nlohmann::ordered_json;
 
-constexpr double kRateHz = 100;  // Of no effect: errors do not depend on it.
+constexpr double kRateHz = 100;  // Arbitrary: errors do not depend on it.
 
 /// Which frame an error belongs to.
 struct FrameKind {

@@ -35,7 +35,7 @@ class AngleScore {
   /// without frames has no field.
   Result<void> WriteTo(nlohmann::ordered_json& json) const;
 
-  /// Of the mean of both knees.
+  /// A frame is bent when the mean flexion of both knees exceeds this, degrees.
   static constexpr double kBentDeg = 30;
 
  private:

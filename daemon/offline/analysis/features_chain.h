@@ -5,8 +5,8 @@
 
 #include "common/stream/sensor.h"
 #include "common/virtual/devices/accelerometer.h"
-#include "daemon/sensor/features/rig_features.h"
 #include "daemon/sensor/features/kalman_filter.h"
+#include "daemon/sensor/features/rig_features.h"
 
 namespace footing::eval {
 

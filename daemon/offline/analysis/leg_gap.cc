@@ -7,7 +7,7 @@ namespace footing::legs {
 namespace {
 
 constexpr double kLegRadiusM = 0.02;
-constexpr int kHips[] = {1, 3};  // Of EngineOutput::links; their origins are the hips.
+constexpr int kHips[] = {1, 3};  // Indices into EngineOutput::links: the origins are the hips.
 
 double Share(double part, double whole) {
   return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0;

@@ -26,6 +26,7 @@ inline constexpr std::array kColours{"#1f5fa8", "#c2571a", "#3d8b37",
                                      "#8a4fa0", "#7a7a7a", "#b8860b"};
 inline constexpr const char* kReferenceColour = "#222";
 
+/// A number as text, with six significant digits.
 std::string Number(double value);
 
 /// The opening of an SVG of this size, white.
@@ -35,6 +36,7 @@ std::string Open(double width, double height);
 std::string Label(double x, double y, const std::string& anchor, const std::string& text,
                   const std::string& more = "");
 
+/// A line as an SVG element; `more` has further attributes.
 std::string Line(double x1, double y1, double x2, double y2, const std::string& colour,
                  const std::string& more = "");
 
@@ -44,12 +46,13 @@ struct PlanShape {
   std::string colour;
 };
 
+/// One of the plans side by side in a PlanPlot.
 struct PlanPanel {
   std::string name;
   std::vector<PlanShape> shapes;  ///< Later ones are drawn over earlier ones.
 };
 
-/// What a colour means.
+/// Legend entry: the meaning of a colour.
 struct PlanKey {
   std::string colour;
   std::string meaning;
@@ -60,12 +63,14 @@ struct PlanKey {
 std::string PlanPlot(const std::string& title, const std::vector<PlanPanel>& panels,
                      const std::vector<PlanKey>& keys);
 
+/// A curve of a line plot.
 struct Curve {
   std::string name;
   std::vector<std::pair<double, double>> points;  ///< x, y; x rising.
   bool reference = false;                         ///< The truth: dark and broad, under the others.
 };
 
+/// Ranges of a line plot's axes.
 enum class Axes {
   kFromZero,  ///< Both begin at zero; the legend is in the corner.
   kFitted,    ///< x is as long as the curves, y from mark to mark; the legend is beside them.

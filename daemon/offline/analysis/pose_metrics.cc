@@ -19,7 +19,7 @@ constexpr const char* kAngles[] = {"hip", "knee", "shoulder", "elbow", "chest"};
 constexpr const char* kHipParts[] = {
     "hip_swing_deg",       "hip_twist_deg",   "hip_twist_bent_deg", "pelvis_deg",
     "thigh_direction_deg", "hip_flexion_deg", "hip_abduction_deg",  "hip_rotation_deg"};
-constexpr double kBentDeg = 30;  // Of the true knee: from there on it shows how the thigh turns.
+constexpr double kBentDeg = 30;  // Flexion of the true knee from which the turn of the thigh shows.
 
 void AddSides(const body::Body& body, Landmark left, std::vector<int>& joints) {
   for (const Landmark landmark : {left, body::Mirrored(left)}) {

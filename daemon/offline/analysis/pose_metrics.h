@@ -62,7 +62,7 @@ class PoseScore {
     return {angles_[0].mean(), hips_[0].mean(), hips_[1].mean(), angles_[1].mean(),
             hips_[5].mean(),   hips_[6].mean(), hips_[7].mean()};
   }
-  /// What hip_about_mean_deg is computed from: left and right, a frame each.
+  /// Samples behind hip_about_mean_deg: left and right, one vector a frame.
   const std::array<std::vector<Eigen::Vector3d>, 2>& hip_turns_rad() const {
     return hip_turns_rad_;
   }
@@ -91,11 +91,11 @@ class PoseScore {
 /// A hip as gait analysis reports it, degrees; 0 in the T-pose, in which the thighs hang straight
 /// down. Flexion is positive forwards, abduction outwards, rotation inwards.
 struct HipAngles {
-  double flexion = 0;    ///< Of the thigh in the sagittal plane of the pelvis.
-  double abduction = 0;  ///< Of the thigh out of that plane.
-  /// Of the thigh about itself, beyond the least turn that brings it down to where it points. The
-  /// cardan angles of Grood & Suntay (1983) differ from this when the hip is both bent and spread,
-  /// and have no rotation where the thigh points sideways.
+  double flexion = 0;    ///< Angle of the thigh in the sagittal plane of the pelvis.
+  double abduction = 0;  ///< Angle of the thigh out of that plane.
+  /// Turn of the thigh about itself, beyond the least turn that brings it down to where it points.
+  /// The cardan angles of Grood & Suntay (1983) differ from this when the hip is both bent and
+  /// spread, and have no rotation where the thigh points sideways.
   double rotation = 0;
 };
 

@@ -88,7 +88,7 @@ Squares MeasureSpread(const Stretches& stretches, const Mean& mean, Sway& sway) 
   sway.range_x_m = most_x - least_x;
   sway.range_y_m = most_y - least_y;
 
-  double spread_m2 = 0;  // Of the distances about their mean, summed as such: no cancellation.
+  double spread_m2 = 0;  // Squares about the mean distance, summed as such: no cancellation.
   ForEach(stretches, [&](const CopSample& sample) {
     const double distance = std::hypot(sample.x_m - mean.x_m, sample.y_m - mean.y_m);
     spread_m2 += (distance - sway.mean_distance_m) * (distance - sway.mean_distance_m);

@@ -56,7 +56,7 @@ struct Sway {
   double ellipse95_prieto_m2 = 0;      ///< 2 pi 3.00 sqrt(det S) (Prieto 1996, eqs. 13 to 17).
   double ellipse_axis_major_sd_m = 0;  ///< Square roots of the eigenvalues of S.
   double ellipse_axis_minor_sd_m = 0;
-  double ellipse_angle_rad = 0;  ///< Of the major axis from x, in (-pi/2, pi/2].
+  double ellipse_angle_rad = 0;  ///< Angle of the major axis from x, in (-pi/2, pi/2].
   double sway_area_rate_m2ps = 0;
   double circle95_m2 = 0;
   double mean_frequency_hz = 0;  ///< Mean velocity / (2 pi mean distance) (eq. 19); 0 at rest.
@@ -82,11 +82,13 @@ std::vector<CopSample> Resample(std::span<const CopSample> samples, double rate_
 /// Middle one of the intervals between samples; 0 for fewer than two samples.
 double MedianInterval(const Stretches& stretches);
 
+/// Forces on a board's corners at one time.
 struct CornerSample {
   double time_s = 0;
   board::CornerForces forces;
 };
 
+/// Geometry of a board and the loads that count as a person on it.
 struct BoardShape {
   stream::BoardGeometry geometry = board::kBalanceBoard;
   /// Less than this is nobody: the board and a step on or off it.
@@ -99,10 +101,10 @@ struct BoardShape {
 struct Gaps {
   std::size_t count = 0;
   double longest_s = 0;
-  double seconds = 0;  ///< Of all together.
+  double seconds = 0;  ///< Total duration of all gaps.
 };
 
-/// What stood on the board.
+/// Load on the board: its weight, and the stretches of time in which somebody stood on it.
 struct Standing {
   double weight_n = 0;      ///< Median of the totals while anybody stood on it; 0: nobody did.
   std::size_t samples = 0;  ///< With a COP.

@@ -21,12 +21,14 @@ class SpeedOverAStep {
   std::size_t next_ = 0;
 };
 
+/// A command in force: its start, its speed, and the falls counted before it.
 struct GivenCommand {
   double time_s = 0;
   double speed_mps = 0;
   std::uint64_t falls_before = 0;
 };
 
+/// Outcome of one command.
 enum class Tracking {
   kShort,      ///< Given for less than kLongCommandS: not evaluated.
   kTracked,    ///< Its gait runs, at its speed to kTrackedMps, and nobody fell.

@@ -200,7 +200,7 @@ class Readers {
     delays_us_.push_back(static_cast<double>(clock::MonotonicNs() - stamp_ns) * 1e-3);
   }
 
-  std::vector<double> delays_us_;  // Of the thread.
+  std::vector<double> delays_us_;  // Delays measured on the reader's thread.
   LoopThread thread_;
   std::optional<transport::Client> client_;
   std::optional<Viewer> viewer_;
@@ -406,7 +406,7 @@ class Race {
   BareFanOut parsed_;
   std::vector<std::unique_ptr<Broker>> brokers_;
   std::vector<RaceWay> ways_;
-  std::vector<double> delays_us_;  // Of the reader's thread.
+  std::vector<double> delays_us_;  // Delays measured on the reader's thread.
   transport::MessageParser parser_;
   std::optional<transport::Client> client_;
   std::optional<BareReader> bare_reader_;

@@ -174,7 +174,7 @@ std::string Greeting(BrokerKind kind, BrokerLink::Part part, int number) {
   return bytes;
 }
 
-/// What stands at the front of the bytes.
+/// Message at the front of the received bytes.
 struct Front {
   std::size_t size = 0;  ///< 0: more must come.
   std::optional<std::string_view> payload;
@@ -324,7 +324,7 @@ bool Load(void* library, const char* name, Function*& function) {
 
 }  // namespace
 
-/// What is used of liblsl's C interface; its handles are pointers.
+/// The functions used of liblsl's C interface; its handles are pointers.
 struct LslLink::Library {
   void* handle = nullptr;
   void* (*create_info)(const char*, const char*, std::int32_t, double, int, const char*) = nullptr;

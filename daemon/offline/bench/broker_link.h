@@ -17,6 +17,7 @@
 
 namespace footing::bench {
 
+/// Message brokers that the bench compares with.
 enum class BrokerKind { kMosquitto, kNats };
 
 const char* NameOf(BrokerKind kind);

@@ -113,7 +113,7 @@ Result<Rows> BodyKinematics() {
       kept = matrix(3, 7);
     });
   };
-  // What no forward kinematics can do without.
+  // Lower bound for any forward kinematics: the sines and cosines alone.
   const auto sines = [&] {
     return CostUs([&](int pose) {
       double sum = 0;
@@ -289,7 +289,7 @@ std::vector<Inputs> Measured(const body::Body& body, const motion::Motion& motio
   return all;
 }
 
-/// Of a trained model's sizes; it outputs the T-pose and trembles a little about it.
+/// Untrained models of a trained model's sizes; they output the T-pose with a small tremble.
 reconstruction::Models Trained(const body::Body& body, const motion::Motion& motion) {
   const int dof = body.skeleton.dof;
   noise::Random random(2);
@@ -352,7 +352,7 @@ reconstruction::Models OfPaper(const body::Body& body, const motion::Motion& mot
   return models;
 }
 
-/// What a mode's frames cost, once its T-pose is over.
+/// Cost of a mode's frames, once its T-pose is over.
 struct Bench {
   body::Body body;
   motion::Motion motion;
@@ -686,7 +686,7 @@ namespace {
 using learning::Examples;
 
 constexpr int kAxes = 2;
-constexpr int kHidden = 20;       // Of FANN's network, and at most of ours.
+constexpr int kHidden = 20;       // Hidden units of FANN's network; the most of ours.
 constexpr double kNoiseM = 0.01;  // On the fed-back COM, without which the closed loop diverges.
 
 /// One axis: 84 s at 60 Hz to train on, as much to choose by, as much to test with.

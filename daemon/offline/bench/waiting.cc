@@ -136,13 +136,13 @@ constexpr std::size_t kAtOnce = 50;  // Viewers that connect.
 constexpr int kContestTicks = 150;
 constexpr int kContestRounds = 5;
 constexpr std::int64_t kContestIntervalNs = 10'000'000;
-constexpr std::size_t kLeastTickBytes = 400;  // What greets a viewer is shorter.
+constexpr std::size_t kLeastTickBytes = 400;  // The greeting of a viewer is shorter.
 
 /// One way to bring a frame to all viewers, and what of it the server costs.
 struct FanOutWay {
   std::string name;
   std::function<void()> publish;  ///< On the server's thread.
-  std::function<double()> cpu_s;  ///< Of the server until now.
+  std::function<double()> cpu_s;  ///< CPU time of the server so far, s.
   std::uint64_t received = 0;     ///< Ticks, all viewers together; of the viewers' thread.
   std::vector<double> us_per_tick = {};
 };

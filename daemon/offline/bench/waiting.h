@@ -109,8 +109,8 @@ class Viewer {
   std::optional<transport::FramedConnection> connection_;
 };
 
-/// What footingd publishes in one tick with five devices: three Wiimotes and two Balance Boards at
-/// about 100 reports a second, so one sample and one raw report each, and their features.
+/// Channels and bytes of one footingd tick with five devices: three Wiimotes and two Balance Boards
+/// at about 100 reports a second, so one sample and one raw report each, and their features.
 std::vector<transport::Channel> SensorChannels();
 std::vector<transport::ChannelBytes> ExampleTick();
 

@@ -28,9 +28,9 @@ class Ranks {
   std::size_t count() const { return count_; }
   bool first() const { return rank_ == 0; }
 
-  /// What each rank gives, in the order of the ranks, to all of them.
+  /// Gathers each rank's value, in the order of the ranks, on all of them.
   std::vector<std::string> Share(const std::string& own) const;
-  /// What the first rank gives, to all of them.
+  /// Sends the first rank's value to all of them.
   std::string OfFirst(const std::string& own) const;
 
   /// The same with values, which must be plain: all ranks are of one build. Those of the first rank

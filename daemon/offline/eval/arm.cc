@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Of the kinematic prediction alone: a left forearm bends forwards.
+/// Axis for the kinematic prediction alone: a left forearm bends forwards.
 const Eigen::Vector3d kElbowAxis_U = -Eigen::Vector3d::UnitZ();
 
 /// A network's own estimates of both arms from the T-pose on.
@@ -75,7 +75,7 @@ class ArmTrial {
   }
 
  private:
-  /// What a device there is fixed to.
+  /// Rotation in W of the segment to which a device at that place is fixed.
   Eigen::Matrix3d SegmentAt(std::size_t arm, std::size_t place) const {
     const arms::ArmGeometry& geometry = geometry_[arm];
     const std::array joints{geometry.fist.joint, geometry.shoulder, geometry.elbow};
@@ -150,7 +150,7 @@ class ArmTrial {
   const pose_run::ArmRun& run_;
   arms::ArmTracker tracker_;
   std::array<arms::ArmGeometry, arms::kArms> geometry_;
-  std::vector<ArmBound> bounds_;  ///< Of each arm, or none.
+  std::vector<ArmBound> bounds_;  ///< Bounds of each arm, or none.
   std::array<std::array<Eigen::Matrix3d, arms::kPlaces>, arms::kArms> rest_;
   body::Kinematics at_;
   arms::ArmDirections mean_;

@@ -35,7 +35,7 @@ class ArmScore {
 
  private:
   Spread shoulder_, elbow_, hand_;
-  std::vector<double> cm_;  ///< Of hand_, in the order of time.
+  std::vector<double> cm_;  ///< Errors of hand_ in the order of time, cm.
 };
 
 /// How far the estimated rotation of a device since the T-pose is off, in all and of its up alone.
@@ -54,7 +54,7 @@ class TurnScore {
 class NeesScore {
  public:
   void Add(const arms::ArmEstimate& estimate, const arms::ArmDirections& truth);
-  /// Of all, and of parts of equal duration.
+  /// Mean over all frames, and means over parts of equal duration.
   double mean() const;
   std::vector<double> Parts(std::size_t count) const;
 
@@ -78,10 +78,10 @@ struct ArmMoment {
   /// How each place has truly turned since the T-pose, by arms::Place.
   std::array<Eigen::Matrix3d, arms::kPlaces> turns_W;
   arms::ArmDirections truth;
-  ArmDistance error;  ///< Of an estimate.
+  ArmDistance error;  ///< Error of an estimate.
 };
 
-/// What the devices on an arm leave open of it. Where one person has the same attitude of all
+/// Lower bound on an arm's error given its devices. Where one person has the same attitude of all
 /// devices at several times, now and a moment before, but holds the arm differently, no estimator
 /// that goes by these attitudes can be right each time: its error is at least the deviation among
 /// those moments, 1 / sqrt(2) of their distances from each other. Other people's motion, which
@@ -93,8 +93,8 @@ class ArmBound {
 
   /// The next frame.
   void Add(const ArmMoment& moment) { moments_.push_back(moment); }
-  /// Of both arms: the share of frames that have moments like them, the least error there, the
-  /// share of these frames in which it is within the aims (8 and 8 degrees, 6 cm), and the
+  /// Scores of both arms: the share of frames that have moments like them, the least error there,
+  /// the share of these frames in which it is within the aims (8 and 8 degrees, 6 cm), and the
   /// estimate's error in them.
   static nlohmann::ordered_json Json(const std::vector<ArmBound>& arms);
 

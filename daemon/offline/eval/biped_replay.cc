@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxInputs = 1'000'000;
 
-/// What the recording holds of footing-sim.
+/// The recorded messages of footing-sim.
 struct BipedRecording {
   std::map<std::uint64_t, engine::EngineInputs> inputs;  ///< By step.
   std::map<std::uint64_t, std::uint64_t> hashes;         ///< By step.

@@ -42,7 +42,7 @@ constexpr double kIntervalS = 0.1;
 struct Options {
   std::string corners;
   std::string cop;
-  std::string board;  ///< Of an export with several.
+  std::string board;  ///< Board to take from an export with several.
   CopFilterOptions filter;
   double least_s = kShortestS;
   posturography::BoardShape shape;
@@ -50,12 +50,12 @@ struct Options {
   double spacing_y_mm = board::kBalanceBoard.sensor_distance_y_m * 1e3;
 };
 
-/// What there is to measure.
+/// Samples to measure.
 struct Input {
   ordered_json head;  ///< Fields of the answer that come before the measures.
   Stretches stretches;
   posturography::Gaps gaps;
-  std::vector<std::string> warnings;  ///< What makes the measures less than they seem.
+  std::vector<std::string> warnings;  ///< Reasons why the measures are worth less than they seem.
 };
 
 Result<BoardExport> ReadSamples(const Options& options) {
@@ -76,7 +76,7 @@ Result<BoardExport> ReadSamples(const Options& options) {
   return read;
 }
 
-/// What the file says about the board; null where it says nothing.
+/// Appends what the file states about the board; null where it states nothing.
 void AppendMarks(const BoardExport& board, Input& input) {
   const auto mark = [&](const char* name, const auto& value) {
     input.head[name] = value ? ordered_json(*value) : ordered_json(nullptr);
@@ -270,7 +270,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// What posturography advises: at least 50 Hz, and a low-pass at 10 Hz (Ruhe A et al., The
+/// Advice of posturography: at least 50 Hz, and a low-pass at 10 Hz (Ruhe A et al., The
 /// test-retest reliability of centre of pressure measures in bipedal static task conditions, Gait &
 /// Posture 32(4), 2010; Scoppa F et al., Clinical stabilometry standardization, Gait & Posture
 /// 37(2), 2013).

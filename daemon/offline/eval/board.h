@@ -20,7 +20,7 @@ void AddBoardCommand(CLI::App& app, Shared& shared);
 struct CopFilter {
   double rate_hz = 0;
   double cutoff_hz = 0;  ///< Only at an even rate.
-  double window_s = 0;   ///< Of the averages; 0: two intervals of the slower rate.
+  double window_s = 0;   ///< Window of the averages, s; 0: two intervals of the slower rate.
 };
 
 /// The options of a command line, as given; empty ones have the defaults.
@@ -48,7 +48,7 @@ struct BoardExport {
   std::optional<bool> simulated;                     ///< At least one sample is.
   std::optional<bool> tared;                         ///< All samples are.
   std::optional<bool> calibrated;                    ///< All samples are.
-  std::optional<std::uint64_t> missing_ticks;        ///< Of the server, in the whole recording.
+  std::optional<std::uint64_t> missing_ticks;        ///< Ticks that the whole recording lacks.
 };
 
 /// The file is the boards' CSV of `footing-log export`, by its header.

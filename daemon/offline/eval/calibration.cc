@@ -83,7 +83,7 @@ class Person {
 
   const Eigen::Isometry3d& X_WC() const { return X_WC_; }
 
-  /// What the camera sees of the sphere held still at a place.
+  /// The camera's measurement of the sphere held still at a place.
   Result<camera_pose::SeenPoint> Hold(const Vector3d& p_W_m) {
     virtual_camera::Scene scene;
     virtual_camera::Ball ball;
@@ -217,7 +217,7 @@ Result<ordered_json> RunCalibrationTrial(const CalibrationTrial& trial,
 
 namespace {
 
-constexpr double kPosePlacementSdM = 0.025;  // Of an arm in the air.
+constexpr double kPosePlacementSdM = 0.025;  // Placement error of an arm in the air, per axis.
 
 }  // namespace
 

@@ -16,7 +16,7 @@ namespace footing::eval {
 struct CalibrationTrial {
   std::string method = "marks";  ///< One of CalibrationMethods.
   int boards = 2;
-  double placement_sd_m = 0.001;  ///< Of the sphere on a mark, or in a pose, per axis.
+  double placement_sd_m = 0.001;  ///< Placing the sphere on a mark or in a pose, per axis.
   double distance_m = 2;          ///< From the camera to the origin, along the floor.
   int frames = 30;                ///< Per mark.
   int trials = 20;

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::ordered_json;
 using virtual_devices::LinkModel;
 
-/// What comes before is not measured: the clock still looks for the sensor's ticks.
+/// Time before the scored part: the clock still looks for the sensor's ticks.
 constexpr double kSettleS = 5;
 
 struct ClockOptions {
@@ -75,7 +75,7 @@ Course Follow(const ClockOptions& options) {
   return course;
 }
 
-/// Of sorted values, not empty.
+/// Quantile of sorted values, which are not empty.
 double AtShare(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   return sorted[static_cast<std::size_t>(std::lround(at))];

@@ -227,7 +227,7 @@ struct FeatureErrors {
 struct Totals {
   FeatureErrors frequency_hz;
   FeatureErrors phase_deg;
-  FeatureErrors amplitude_share;  // Of 5 % or one count, whichever is more.
+  FeatureErrors amplitude_share;  // In units of 5 % or one count, whichever is more.
   FeatureErrors inclination_deg;
   std::size_t ticks = 0;
   std::size_t missing = 0;
@@ -459,7 +459,7 @@ Result<GrtRecording> ReadGrt(const std::string& path) {
 
 namespace {
 
-/// What counts as right: a frequency within 5 %, a phase within 20 degrees.
+/// Tolerances of a correct estimate: a frequency within 5 %, a phase within 20 degrees.
 constexpr double kFrequencyShare = 0.05;
 constexpr double kPhaseRad = 20 * kPi / 180;
 

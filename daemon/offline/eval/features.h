@@ -40,6 +40,7 @@ struct GrtRecording {
   /// The middle of the range counts as 0; the median length of the quieter half of the rows as 1 g.
   double mps2_per_unit = 0;
 };
+/// Reads a recording in GRT's format; an error names the file.
 Result<GrtRecording> ReadGrt(const std::string& path);
 
 /// Delays from a change of motion to the right feature, which then stays right to the end of the

@@ -19,7 +19,7 @@
 
 namespace footing::eval {
 
-/// What of a fusion trial is shown.
+/// Output of a fusion trial.
 struct FusionReport {
   nlohmann::ordered_json json;
   std::string figure;  ///< SVG: Figure 7 of the pose paper.
@@ -67,7 +67,7 @@ struct LegPlaces {
 /// Why an estimated knee is off: a knee lies on a circle about the line from hip to ankle.
 struct KneeError {
   double turn_rad = 0;    ///< Along that circle, from the truth, by the right-hand rule.
-  double unturned_m = 0;  ///< What is left with the knee turned back along it.
+  double unturned_m = 0;  ///< Remaining distance with the knee turned back along it.
 };
 
 /// The circle of the truth is moved onto that of the estimate by the shortest rotation of the line.

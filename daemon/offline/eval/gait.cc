@@ -374,7 +374,7 @@ struct Outcome {
   int falls = 0;
   std::array<int, kGaits.size()> falls_by_gait{};
   std::vector<Fall> fell;
-  std::array<int, tracking::kTrackings> commands{};  ///< By what became of them.
+  std::array<int, tracking::kTrackings> commands{};  ///< Counted by outcome.
 
   int of(Tracking became) const { return commands[static_cast<std::size_t>(became)]; }
 };

@@ -13,7 +13,7 @@ namespace footing::eval {
 /// `gait`: trials of one gait at one command, each kicked.
 void AddGaitCommand(CLI::App& app, Shared& shared);
 
-/// Of footing-eval gait.
+/// Options of footing-eval gait.
 struct GaitOptions {
   std::string gait = "walk";
   double speed_mps = 0;
@@ -49,7 +49,7 @@ struct RootMeanSquare {
 /// Heading of a body's x axis, rad.
 double YawOf(const Eigen::Quaterniond& q);
 
-/// What is measured of settled locomotion.
+/// Measures of settled locomotion.
 ///
 /// Speed errors are those of the mean speed over successive seconds, since the speed within one
 /// step rises and falls by nature. The apex is that of the COM over its height at lift-off.

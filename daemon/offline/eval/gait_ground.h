@@ -11,6 +11,7 @@
 /// Slopes and steps to walk over: a straight track, and the pilot who leads the character along it.
 namespace footing::eval {
 
+/// A track of slopes or steps, and where they are.
 struct GroundCourse {
   std::string track;            ///< Text for GaitEngine::Create.
   std::vector<double> edges_m;  ///< Where the ground changes, along x: steps, or the slope's foot.
@@ -23,7 +24,7 @@ GroundCourse MakeStepCourse(double step_m, double length_m, Random& random);
 /// A level run-up of random length on which `speed_mps` is reached, then one slope of `length_m`.
 GroundCourse MakeSlopeCourse(double slope_deg, double speed_mps, double length_m, Random& random);
 
-/// What a trial's ground has, at most one of them; 0: not that.
+/// Ground of a trial, at most one of these features; 0: absent.
 struct GroundKind {
   double slope_deg = 0;
   double step_m = 0;

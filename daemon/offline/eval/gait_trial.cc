@@ -403,7 +403,7 @@ std::array<double, 4> ArmAngles(const body::Body& body, const Eigen::VectorXd& q
   const Eigen::Vector3d shoulder = at.p_WJ[joint(Landmark::kLeftShoulder)];
   const Eigen::Vector3d elbow = at.p_WJ[joint(Landmark::kLeftElbow)];
   const Eigen::Vector3d wrist = at.p_WJ[joint(Landmark::kLeftWrist)];
-  // Of the trunk: left from shoulder to shoulder, up from the hips to the neck.
+  // Axes of the trunk: left from shoulder to shoulder, up from the hips to the neck.
   const auto place = [&](Landmark landmark) {
     return at.p_WJ[static_cast<std::size_t>(body.landmarks[landmark])];
   };

@@ -78,6 +78,7 @@ struct Pit {
   double far_m;
 };
 
+/// A track with pits, and where they are.
 struct PitCourse {
   std::string track;  ///< Text for GaitEngine::Create.
   std::vector<Pit> pits;
@@ -129,6 +130,7 @@ struct PushSweep {
   double impulse_ns = 16;  ///< Over 0.1 s.
 };
 
+/// Falls by direction and size of a push.
 struct PushSweepResult {
   std::vector<int> falls;  ///< By direction; direction 0 pushes from behind, then to the left.
   int pushes = 0;

@@ -25,7 +25,7 @@ using nlohmann::ordered_json;
 const Eigen::Vector3d kCamera_W_m(2.2, 0, 1.2);
 constexpr double kFrameS = 1.0 / 60, kTickS = 0.01;
 constexpr double kCameraLateS = 0.025, kReadingLateS = 0.008;
-constexpr double kTimeSdS = 0.001;  // Of an exposure.
+constexpr double kTimeSdS = 0.001;  // Standard deviation of an exposure's time stamp.
 constexpr double kSettledS = 8;     // The T-pose and the way out of it do not count.
 constexpr double kRestMps = 0.05;
 

@@ -12,12 +12,13 @@
 
 namespace footing::eval {
 
+/// Times for which the camera sees and loses a hand, and errors of the devices.
 struct HandTrialOptions {
   std::vector<double> hidden_s = {0.1, 0.25, 0.5};
   double seen_s = 2;
   double sphere_m = 0;      ///< From the device's sensors along its x.
   double lamp_m = 0;        ///< Above a hidden hand; 0: none.
-  double common_share = 0;  ///< Of the camera's variance.
+  double common_share = 0;  ///< Share of the camera's variance that all frames have in common.
   std::uint64_t seed = 1;
 };
 
@@ -37,7 +38,7 @@ struct HandCourse {
   std::vector<arms::HandReading> readings;
 
   Eigen::Index count() const { return p_W_m.cols(); }
-  /// Of a quantity at a time within the course.
+  /// Value of a quantity (a column a time) at a time within the course.
   Eigen::Vector3d At(const Eigen::Matrix3Xd& values, double time_s) const;
   /// Where a point of the device is.
   Eigen::Vector3d PointAt(const Eigen::Vector3d& p_SP_m, double time_s) const;
@@ -51,7 +52,8 @@ struct HandCourse {
   Between Find(double time_s) const;
 };
 
-/// Of side 0 (left) or 1, at the rate of a PS Move, with errors as of a Wiimote (held_device.h).
+/// Course of the hand on side 0 (left) or 1, at a PS Move's rate, with a Wiimote's errors
+/// (held_device.h).
 HandCourse FollowHand(const pose_run::ArmRun& run, int side, std::uint64_t seed);
 
 }  // namespace footing::eval

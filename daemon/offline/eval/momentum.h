@@ -23,7 +23,7 @@ struct MomentumOptions {
   std::string skeleton;  ///< ASF, of an AMC.
   std::optional<double> bvh_unit_m = {};
   double mass_kg = 75;
-  double rate_hz = 60;  ///< Of the cells and of the estimator.
+  double rate_hz = 60;  ///< Rate of the cells and of the estimator.
   double loop_minutes = 0;
   bool unlimited = false;  ///< Boards without an edge.
   double lag_s = 0;
@@ -31,11 +31,13 @@ struct MomentumOptions {
   virtual_sensors::CellErrorConfig errors;
 };
 
+/// True load and place of a foot, W.
 struct TrueFoot {
   double load_n = 0;
-  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< Of the sole.
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< Middle of the sole.
 };
 
+/// Cells' loads in one frame, beside the truth, W.
 struct MomentumFrame {
   momentum::ContactLoads loads;
   Eigen::Vector3d com_m;
@@ -43,11 +45,12 @@ struct MomentumFrame {
   std::array<TrueFoot, momentum::kFeet> feet;
 };
 
+/// A person on cells, frame by frame.
 struct MomentumScene {
   double rate_hz = 60;
   momentum::Subject subject;
   std::vector<MomentumFrame> frames;  ///< Begins with kCalibrationS in the T-pose.
-  double outside_share = 0;           ///< Of loaded feet whose COP is beyond the sensors.
+  double outside_share = 0;           ///< Share of loaded feet whose COP is beyond the sensors.
 };
 
 /// Duration of the T-pose; the transition from it takes a second and a half.
@@ -106,7 +109,7 @@ class MomentumScore {
   std::size_t frames_ = 0;
   bool finite_ = true;
   std::array<Rms, 3> com_;
-  Rms first_minute_, last_minute_;  ///< Of the COM, vertical.
+  Rms first_minute_, last_minute_;  ///< Errors of the COM, vertical.
   double nees_ = 0;                 ///< Summed.
   std::array<Rms, 2> cop_;
   std::array<Rms, 3> angular_error_, angular_true_;

@@ -33,8 +33,8 @@ wrists::SensorModel Sensor() {
   return sensor;
 }
 
-/// What the device's own calibration leaves: it is written in whole counts of 10 bits, so zero is
-/// off by up to half of one and the scale by up to half of one in some 104.
+/// Residual error of the device's own calibration, which is written in whole counts of 10 bits:
+/// zero is off by up to half of one and the scale by up to half of one in some 104.
 struct Flaw {
   Eigen::Array3d gain = Eigen::Array3d::Ones();
   Eigen::Array3d offset_mps2 = Eigen::Array3d::Zero();

@@ -15,7 +15,7 @@
 
 namespace footing::eval {
 
-/// What the features should say at an instant of a walk.
+/// True features at an instant of a walk.
 struct WalkTruth {
   double frequency_hz = 0;
   double phase_rad = 0;

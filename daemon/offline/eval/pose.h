@@ -19,7 +19,7 @@ Result<nlohmann::ordered_json> ScoreInsoles(const pose_run::InsoleRun& run,
                                             const reconstruction::Models& models,
                                             const reconstruction::Options& options);
 
-/// What little knowledge would reach on the same frames, from `start` on: a T-pose that stays, the
+/// Scores of baselines on the same frames, from `start` on: a T-pose that stays, the
 /// mean pose of the basis, both where the T-pose was, and the same solver and prior from hands and
 /// feet alone.
 Result<nlohmann::ordered_json> ScoreBaselines(const pose_run::PoseRun& run,

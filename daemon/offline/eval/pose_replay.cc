@@ -29,7 +29,7 @@ using pose_service::PoseRun;
 using pose_service::SubjectExchange;
 using subject::Subject;
 
-/// What the recording holds of footing-sim, by step.
+/// The recorded messages of footing-sim, by step.
 struct PoseRecording {
   std::map<std::uint64_t, v1::AppliedInput> inputs;
   std::map<std::uint64_t, v1::CharacterFrame> frames;
@@ -223,7 +223,8 @@ mapping::InterfaceOptions InterfaceOf(const std::vector<v1::Tick>& ticks) {
   return {};
 }
 
-Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks, const ReplayOptions& options) {
+Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks,
+                                  const ReplayOptions& options) {
   if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.data_folder);
   const mapping::InterfaceOptions interface = InterfaceOf(ticks);
   engine_files::Wish wish{.interface = interface.interface, .data_folder = options.data_folder};

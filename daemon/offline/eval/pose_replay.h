@@ -24,8 +24,8 @@ Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks, const std::s
 
 /// The ticks of one server out of a recording, in their order, without snapshots.
 struct Recorded {
-  std::vector<v1::Tick> sensor;      ///< Of footingd: status, raw and features.
-  std::vector<v1::Tick> simulation;  ///< Of footing-sim: characters, inputs, tracks and tables.
+  std::vector<v1::Tick> sensor;      ///< From footingd: status, raw and features.
+  std::vector<v1::Tick> simulation;  ///< From footing-sim: characters, inputs, tracks and tables.
 };
 
 /// Reads the topics that a replay needs. Of a tick that is there twice (the recorder reconnected)

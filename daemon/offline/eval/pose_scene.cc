@@ -107,7 +107,7 @@ pose_run::Settings WithHeight(const PoseSceneOptions& options,
   return settings;
 }
 
-/// Of the labels file; none where there is no such file.
+/// Reads the labels file; no spans where no such file is given.
 Result<std::vector<pose_run::ActivitySpan>> ReadActivities(const PoseSceneOptions& options) {
   if (options.activities.empty()) return std::vector<pose_run::ActivitySpan>{};
   if (options.settings.loop_s > 0) {

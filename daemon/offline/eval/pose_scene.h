@@ -27,14 +27,17 @@ struct PoseSceneOptions {
   pose_run::Settings settings;
 };
 
+/// Scene on two boards. InvalidData when a file cannot be read.
 Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options);
 
 /// With the plates of options.forces, whose COPs are moved by what those of options.still_forces
 /// are off from under the body that stands still. A file that cannot be read is InvalidData, too.
 Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options);
 
+/// Scene with insoles in the shoes.
 Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options);
 
+/// Scene with devices at these places on the arms.
 Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options,
                                       const pose_run::Places& places);
 

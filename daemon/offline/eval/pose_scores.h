@@ -34,7 +34,7 @@ class FootScore {
  private:
   using SolePoints = std::array<Eigen::Vector3d, 2>;  ///< Heel and ball.
 
-  /// What is known of a foot from the frame before.
+  /// State of a foot from the frame before.
   struct Foot {
     reconstruction::FootGeometry geometry;
     int ankle = 0, toe = 0;  ///< Joints.
@@ -87,9 +87,9 @@ class ComScore {
  private:
   Spread vertical_, horizontal_, forward_, lateral_;
   Drift vertical_drift_, horizontal_drift_;
-  Spread loads_vertical_;                   ///< Of the estimate from the loads alone.
-  std::array<Spread, 3> posture_;           ///< Of hands and feet alone.
-  Spread pose_vertical_, pose_horizontal_;  ///< Of the pose's own COM.
+  Spread loads_vertical_;                   ///< Errors of the estimate from the loads alone.
+  std::array<Spread, 3> posture_;           ///< Errors of the one from hands and feet alone.
+  Spread pose_vertical_, pose_horizontal_;  ///< Errors of the pose's own COM.
   double nees_ = 0;                         ///< Vertical, summed.
   std::size_t frames_ = 0;
   std::array<Spread, 3> angular_;
@@ -110,8 +110,9 @@ inline bool Has(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
+/// Adds the options of a pose subcommand.
 void AddPoseFlags(CLI::App& command, PoseFlags& flags);
-/// What the strings say, into the options.
+/// Translates the strings into the options; an error names the flag.
 Result<void> Translate(PoseFlags& flags);
 
 /// Sets constants of the best mode by "name=value", to choose them on clips for validation. An

@@ -138,7 +138,7 @@ class TrialScore {
   SmoothnessScore smoothness_;
   FootScore feet_;
   PoseBreakdown breakdown_;
-  double nees_ = 0, nees_count_ = 0;  ///< Of joints' places, summed.
+  double nees_ = 0, nees_count_ = 0;  ///< NEES of joint positions, summed, and its count.
   Spread misfit_;
   std::size_t frames_ = 0, invalid_ = 0;
   std::size_t invalid_since_ = 0, longest_invalid_ = 0;  ///< Frames in a row.

@@ -14,7 +14,7 @@
 
 namespace footing::eval {
 
-/// What is given to the reconstruction instead of its own estimates.
+/// True values given to the reconstruction instead of its own estimates.
 struct Oracle {
   bool com = false, momentum = false, feet = false;
 };
@@ -56,7 +56,7 @@ class PoseBreakdown {
   std::vector<Activity> activities_;
 };
 
-/// What the plates measured, the centre of mass along each axis, and the same reconstruction on
+/// Scores against the plates: the centre of mass along each axis, and the same reconstruction on
 /// simulated forces, over the same frames. Field `plates` of `pose --boards forces`.
 Result<nlohmann::ordered_json> ScorePlates(const pose_run::PlateRun& plates,
                                            const reconstruction::Models& models,

@@ -57,7 +57,7 @@ class HubReplay {
         continue;
       hub_.OnDetach(status.device(), "lost in the recording");
     }
-    // What changed since the tick before holds from the end of this one on, as in the daemon.
+    // Changes since the tick before hold from the end of this one on, as in the daemon.
     if (tick.has_setup()) TakeSetup(tick.setup());
     return hub_.Tick(now_ns_);
   }

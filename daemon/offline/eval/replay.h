@@ -23,7 +23,7 @@ struct EngineReplay {
   std::uint64_t equal = 0;
   std::uint64_t first_difference_step = 0;  ///< 0: none.
   std::uint64_t last_step = 0;
-  std::uint64_t state_hash = 0;  ///< Of the second run after its last step.
+  std::uint64_t state_hash = 0;  ///< State hash of the second run after its last step.
 };
 
 /// InvalidData when the first recorded frame is too late for the engine's first inputs to be in the
@@ -33,6 +33,7 @@ Result<void> CheckFirstStep(std::uint64_t first_step);
 /// Feeds the raw reports of footingd's ticks to the same code that published them.
 FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);
 
+/// Data files and settings to replay footing-sim with.
 struct BipedReplayOptions {
   engine::EngineTexts texts;    ///< The data files.
   engine::EngineConfig config;  ///< With the first interface.

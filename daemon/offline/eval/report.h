@@ -12,7 +12,7 @@
 
 namespace footing::eval {
 
-/// What all subcommands share.
+/// State that all subcommands share.
 struct Shared {
   bool json = false;
   int exit_code = 0;  ///< Set by the subcommand that ran.

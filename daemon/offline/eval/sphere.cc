@@ -61,7 +61,7 @@ void Swing(camera::Scene& scene, double depth_m, int frame) {
   }
 }
 
-/// What is always so under a condition, for the calibration too.
+/// Applies the permanent effects of a condition, for the calibration too.
 void ApplyOptics(const std::string& condition, camera::Scene& scene) {
   if (condition == "soft") scene.sensor.psf_px = 1.6;
   if (condition == "dim") scene.sensor.read_noise_dn = 3;
@@ -81,7 +81,7 @@ void ApplyOptics(const std::string& condition, camera::Scene& scene) {
   }
 }
 
-/// What happens in one frame.
+/// Applies the effects of a condition on one frame.
 void ApplyEvents(const std::string& condition, camera::Scene& scene, noise::Random& random) {
   if (condition == "clutter" || condition == "absent" || condition == "lamp")
     camera::AddClutter(scene, 40, random);

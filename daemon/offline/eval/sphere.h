@@ -18,7 +18,7 @@
 
 namespace footing::eval {
 
-/// What a trial counted so far.
+/// Counts of a trial so far.
 struct SphereProgress {
   int frames = 0, spheres = 0;
   int missed = 0;  ///< Not found, or in a wrong place.
@@ -39,7 +39,7 @@ struct SphereTrial {
 /// The rate that is exceeded with a confidence of 5 % only, after so many events in so many trials.
 double RateBound(int events, int trials);
 
-/// What the lens, the light or the surroundings do: nominal, dim, soft, saturated, moving,
+/// Conditions of lens, light and surroundings: nominal, dim, soft, saturated, moving,
 /// quarter_hidden, half_hidden, clutter, yuyv, bent_lens, other_limb, absent; lamp: clutter with a
 /// sphere at the lamp's edge; and tracked, whose frames follow one another, so that the finder
 /// knows where to look.

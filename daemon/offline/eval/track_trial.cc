@@ -245,7 +245,7 @@ bool Has(const engine::EngineOutput& output, engine::EventKind kind) {
 struct Embodied {
   users::Person person;
   UserDevices devices;
-  double slowest_hz = 1;       ///< Of the last motions.
+  double slowest_hz = 1;       ///< Lowest cadence of the last motions.
   double jump_meant_s = -1e9;  ///< When a jump was last meant.
 };
 

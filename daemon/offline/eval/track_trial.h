@@ -81,10 +81,10 @@ class JumpDelays {
   const Delay& to_take_off() const { return to_take_off_; }  ///< From the command.
 
  private:
-  bool meant_ = false, commanded_ = false;  ///< Of the last moment.
+  bool meant_ = false, commanded_ = false;  ///< Flags of the last moment.
   double meant_s_ = 0;                      ///< When a jump was last meant.
-  std::optional<double> begun_s_;           ///< Of a gesture without a command yet.
-  std::optional<double> commanded_s_;       ///< Of its command, while the character does not jump.
+  std::optional<double> begun_s_;           ///< Start of a gesture without a command yet.
+  std::optional<double> commanded_s_;  ///< Time of its command, while the character does not jump.
   Delay to_command_, to_take_off_;
 };
 
@@ -104,7 +104,7 @@ class JumpEvents {
 
   std::uint64_t meant() const { return meant_count_; }
   std::uint64_t recognised() const { return recognised_; }
-  std::uint64_t late() const { return late_; }  ///< Of recognised().
+  std::uint64_t late() const { return late_; }  ///< Those of recognised() that came late.
   std::uint64_t commanded() const { return commanded_count_; }
   std::uint64_t not_meant() const { return not_meant_; }
   /// Shares of meant() and of commanded().
@@ -117,8 +117,8 @@ class JumpEvents {
   }
   void Decide(bool recognised, bool late);
 
-  bool meant_ = false, commanded_ = false;  ///< Of the last moment.
-  std::optional<double> begun_s_;           ///< Of a gesture that is not decided yet.
+  bool meant_ = false, commanded_ = false;  ///< Flags of the last moment.
+  std::optional<double> begun_s_;           ///< Start of a gesture that is not decided yet.
   std::optional<double> meant_s_;           ///< When a jump was last meant.
   bool overdue_ = false;                    ///< The delay of that gesture is over.
   std::uint64_t meant_count_ = 0, recognised_ = 0, late_ = 0;
@@ -157,12 +157,13 @@ struct TrackUser {
   std::optional<users::GripWish> grip = {};
   users::StyleWish style = {};
   std::string mapping_table = {};                          ///< Path; empty: the built-in one.
-  stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< Of the leg interface.
-  std::uint64_t seed = 1;  ///< Of the user's style and noise, the task and the push.
+  stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< Used by the leg interface.
+  std::uint64_t seed = 1;  ///< Seed of the user's style and noise, the task and the push.
   /// Ends after this time at the latest; without it a trial ends at the finish line.
   std::optional<double> seconds = {};
 };
 
+/// Measures of one run along a track.
 struct TrackResult {
   bool completed = false;  ///< Crossed the finish line.
   double time_s = 0;       ///< From the start line to there.
@@ -170,7 +171,7 @@ struct TrackResult {
   double off_track_s = 0;  ///< Beside the track, but for falls.
   std::string task;        ///< The one that was drawn; empty: none.
   stream::FailureCounts failures;
-  Agreement agreement;           ///< Of motion and command, but for falls; not of a direct user.
+  Agreement agreement;           ///< Motion and command compared, but for falls; no direct user.
   JumpEvents jumps;              ///< The same, gesture by gesture.
   JumpDelays jump_delays;        ///< Where their time goes.
   RootMeanSquare heading_error;  ///< Body's yaw against the heading, rad, but for falls.

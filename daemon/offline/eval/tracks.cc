@@ -96,7 +96,7 @@ void Pool(const RootMeanSquare& part, RootMeanSquare& all) {
 }
 
 Result<TrackTrials> RunTrials(const TrackOptions& options, const std::string& track, TrackUser user,
-                         std::uint64_t seed) {
+                              std::uint64_t seed) {
   Result<TrackTrace> trace = TrackTrace::Create(options.trace);
   if (!trace) return trace.error();
   TrackTrials trials;
@@ -160,7 +160,8 @@ nlohmann::ordered_json OrNull(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nullptr;
 }
 
-nlohmann::ordered_json Report(const TrackOptions& options, std::uint64_t seed, const TrackTrials& trials) {
+nlohmann::ordered_json Report(const TrackOptions& options, std::uint64_t seed,
+                              const TrackTrials& trials) {
   const auto& times_s = trials.times_s;
   nlohmann::ordered_json failures;
   for (const stream::FailureCause cause : stream::kFailureCauses) {
@@ -256,7 +257,7 @@ constexpr const char* kStep = "#8a4fa0";
 constexpr const char* kStartLine = "#3d8b37";
 constexpr const char* kMarkLine = "#e09a00";
 constexpr const char* kFinishLine = "#c0202a";
-/// Of a long track only the beginning is drawn, m.
+/// Length of a track that is drawn, from its beginning, m.
 constexpr double kMostDrawnM = 120;
 
 using Corner = std::array<double, 2>;

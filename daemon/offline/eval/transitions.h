@@ -11,15 +11,16 @@ namespace footing::eval {
 struct Leap {
   double flight_s = 0;
   double length_m = 0;     ///< That the COM moves, level.
-  double rise_m = 0;       ///< Of the COM over its height at lift-off; to be the height commanded.
+  double rise_m = 0;       ///< Rise of the COM above its height at lift-off; ideally commanded_m.
   double commanded_m = 0;  ///< That height.
 };
 
+/// Outcome of one change of gait.
 struct TransitionResult {
   bool fell = false;
   bool succeeded = false;
   double latency_s = 0;      ///< Command to the new gait's controller; when that was reached.
-  std::optional<Leap> leap;  ///< Of a transition to jumping, once it is over.
+  std::optional<Leap> leap;  ///< Leap of a transition to jumping, once it is over.
 };
 
 /// A command of this gait from the range in which people will give it: walk 0.2 to 1.4 m/s, run
@@ -30,7 +31,7 @@ biped::GaitCommand DrawCommand(stream::Gait gait, Random& random);
 struct TransitionSpeeds {
   std::optional<double> from_mps;
   std::optional<double> to_mps;
-  std::optional<double> height_m;  ///< Of the jumps.
+  std::optional<double> height_m;  ///< Height of the jumps.
 };
 
 /// `from` for 7 to 8.5 s with a kick of 2 N s, then `to`. It succeeded when the new gait's states

@@ -11,7 +11,7 @@ namespace footing::learning {
 struct QuickpropOptions {
   double epsilon = 1;  ///< Part of the slope that is gone down besides, or instead at a start.
   double growth = 2;   ///< mu: a step is at most this many times the last one.
-  double decay = 0;    ///< Of the weights, added to the slope.
+  double decay = 0;    ///< Decay of the weights, added to the slope.
 };
 
 /// State of one set of weights; goes down the slopes it is given.
@@ -31,6 +31,7 @@ class Quickprop {
 /// s' = 1/4 - s^2.
 Eigen::ArrayXXd Sigmoid(const Eigen::ArrayXXd& x);
 
+/// Options of the candidates' training.
 struct CandidateOptions {
   int pool = 8;
   int epochs_max = 200;
@@ -40,8 +41,8 @@ struct CandidateOptions {
   QuickpropOptions quickprop = {.epsilon = 2, .growth = 2, .decay = 0};
 };
 
-/// What candidates see, and what they are to explain. Covariance is searched in single precision,
-/// which is twice as fast; error reduction takes the difference of nearly equal numbers.
+/// Inputs of candidates, and the errors they are to explain. Covariance is searched in single
+/// precision, which is twice as fast; error reduction takes the difference of nearly equal numbers.
 template <typename Scalar>
 struct CandidateTask {
   using Matrix = Eigen::MatrixX<Scalar>;
@@ -85,6 +86,7 @@ Scores<Scalar> Score(const CandidateTask<Scalar>& task, const Eigen::MatrixXd& w
 template <typename Scalar>
 Eigen::MatrixXd ScoreGradient(const CandidateTask<Scalar>& task, const Scores<Scalar>& scores);
 
+/// The candidate that won, trained.
 struct NewUnit {
   Eigen::VectorXd weights;
   Eigen::VectorXd values;        ///< On the rows of `units`.
@@ -97,6 +99,7 @@ template <typename Scalar>
 NewUnit TrainCandidates(const CandidateTask<Scalar>& task, const CandidateOptions& options,
                         noise::Random& random);
 
+/// Options of the training of sigmoid outputs.
 struct OutputOptions {
   int epochs_max = 200;
   int patience = 8;

@@ -10,17 +10,19 @@
 
 namespace footing::learning {
 
+/// Kinds of output units.
 enum class Outputs {
   kLinear,   ///< Any targets; output weights by least squares.
   kSigmoid,  ///< Targets of +-1/2, as the classic problems have; by Quickprop.
 };
 
-/// What a candidate unit is trained for; see Scores.
+/// Training objective of a candidate unit; see Scores.
 enum class Objective { kCovariance, kErrorReduction };
 
+/// Options of TrainCascade.
 struct CascadeOptions {
   Outputs outputs = Outputs::kLinear;
-  /// Of linear outputs; candidates for sigmoid ones always go by covariance.
+  /// Objective for linear outputs; candidates for sigmoid ones always go by covariance.
   Objective objective = Objective::kErrorReduction;
   int hidden_max = 30;
   /// Validation may not go below it; at most hidden_max. A goal that is reached with fewer may.
@@ -37,12 +39,13 @@ struct CascadeOptions {
   OutputOptions output_training;
 };
 
+/// A trained network with its errors, mean squared, in the targets' unit squared.
 struct CascadeResult {
   cascade::CascadeNetwork network;
   int hidden_units = 0;
   int epochs = 0;  ///< Passes over the data, of candidates and outputs.
   double train_mse = 0;
-  double validation_mse = 0;  ///< Of the float32 network; 0 without validation rows.
+  double validation_mse = 0;  ///< Error of the float32 network; 0 without validation rows.
   bool goal_reached = false;  ///< mse_goal or near.
 };
 

@@ -50,7 +50,7 @@ class Wander {
 };
 
 constexpr double kHeightM = 1.0;
-constexpr double kBoardOffsetM = 0.16;  // Of each board's middle to the side.
+constexpr double kBoardOffsetM = 0.16;  // Distance of each board's middle to the side.
 constexpr double kHalfLengthM = 0.119;  // From a cell to the board's middle, forward.
 constexpr double kHalfWidthM = 0.1075;
 

@@ -59,17 +59,18 @@ Eigen::Vector2d CopError(const LoadClip& clip);
 struct SwaySettings {
   double seconds = 84;
   double rate_hz = 60;
-  double noise_sd = 0.0013;  ///< Of a cell: 0.1 kg of 75 kg.
+  double noise_sd = 0.0013;  ///< Noise of a cell, in parts of the weight: 0.1 kg of 75 kg.
 };
 LoadClip MakeSway(const SwaySettings& settings, std::uint64_t seed);
 
+/// Errors and limits of the boards in BoardLoads.
 struct BoardLoadSettings {
-  double noise_kg = 0.1;  ///< Of a cell.
+  double noise_kg = 0.1;  ///< Noise of a cell.
   bool limited = true;    ///< Boards have an edge: virtual_sensors::LoadBoard.
   bool mirrored = false;  ///< The mirror image at the plane y = 0.
 };
 
-/// What two boards under the feet would measure while the body moves (common/virtual/devices), at
+/// Loads that two boards under the feet would measure during a motion (common/virtual/devices), at
 /// momentum::kNetworkRateHz. Each board's middle is where its foot mostly is. The origin is half
 /// way between the points of the soles where the COP is at rest, where the feet mostly are; as in
 /// use, when it comes from a T-pose. `motion` is aligned (alignment.h); `body` is of its skeleton.

@@ -11,7 +11,7 @@
 /// Trainers of small networks. The same examples, options and seed give the same bits.
 namespace footing::learning {
 
-/// What a network learns from: row p of `inputs` gives row p of `targets`, in the data's own units.
+/// Training data: row p of `inputs` gives row p of `targets`, in the data's own units.
 struct Examples {
   Eigen::MatrixXd inputs;
   Eigen::MatrixXd targets;
@@ -38,9 +38,9 @@ struct FeedbackNoise {
   /// Columns of one signal at several instants, a group each: an estimate that is wrong is wrong by
   /// nearly the same at each of them.
   std::vector<std::vector<Eigen::Index>> groups;
-  double common_sd = 0;  ///< Of the error that a row's group shares, in the inputs' unit.
-  double own_sd = 0;     ///< Of each column's own error besides.
-  int copies = 1;        ///< Of every row, each with other noise.
+  double common_sd = 0;  ///< Error that a row's group shares, in the inputs' unit.
+  double own_sd = 0;     ///< Each column's own error besides.
+  int copies = 1;        ///< Copies of every row, each with other noise.
 };
 
 /// The rows with noise on their inputs; targets stay true. Without groups, the rows as they are.
@@ -72,6 +72,7 @@ struct MlpGradient {
 MlpGradient Gradient(const Mlp& network, const Eigen::MatrixXd& scaled_inputs,
                      const Eigen::MatrixXd& scaled_targets);
 
+/// Options of the training of a network with one hidden layer.
 struct MlpOptions {
   int hidden = 20;
   double rate = 0.05;     ///< Step along the mean gradient of a batch of scaled rows.
@@ -84,8 +85,9 @@ struct MlpOptions {
   int patience = 100;  ///< Epochs without a better error, then it stops.
 };
 
+/// A trained network with its mean squared errors.
 struct MlpResult {
-  Mlp network;  ///< Of the best epoch.
+  Mlp network;  ///< Network of the best epoch.
   int epochs = 0;
   double train_mse = 0;
   double validation_mse = 0;  ///< 0 without validation rows.

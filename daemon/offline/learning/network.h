@@ -15,14 +15,15 @@
 /// compare with the product's regression (docs/hands.md).
 namespace footing::arm_network {
 
+/// Inputs and outputs of a network.
 enum class Kind {
   kPaper,     ///< {q_a(t), a, omega} to q_a(t + 1), a and omega in the device's frame.
-  kResidual,  ///< What is left after the kinematic prediction, from it and arms::ArmFeatures.
+  kResidual,  ///< Residual of the kinematic prediction, from it and arms::ArmFeatures.
 };
 
 /// q_a of a left arm: four degrees of freedom.
 struct ArmPose {
-  Eigen::Matrix3d R_WU = Eigen::Matrix3d::Identity();  ///< Of the upper arm; I in the T-pose.
+  Eigen::Matrix3d R_WU = Eigen::Matrix3d::Identity();  ///< Upper arm; I in the T-pose.
   double elbow_rad = 0;
 };
 
@@ -35,7 +36,7 @@ ArmPose ToPose(const arms::ArmDirections& arm);
 ArmPose Predicted(const ArmPose& pose, const Eigen::Vector3d& elbow_axis_U,
                   const Eigen::Vector3d& angular_velocity_W_radps, double step_s);
 
-/// What one frame says of an arm, as of a left one.
+/// Measurements of one frame of an arm, mirrored to a left one.
 struct FrameInput {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
@@ -48,6 +49,7 @@ FrameInput MakeInput(std::size_t arm, const arms::HandReading& reading,
                      const arms::HandState& state, const arms::ArmFeatures& features);
 
 inline constexpr std::size_t kOutputs = 4;
+/// Number of inputs of such a network.
 std::size_t InputCount(Kind kind);
 
 /// The network's inputs. `last` is the estimate of the frame before; of kResidual its prediction.
@@ -55,8 +57,10 @@ Eigen::VectorXd NetworkInputs(Kind kind, const ArmPose& last, const Eigen::Vecto
                               const FrameInput& frame);
 /// The outputs that lead from `last` (as above) to `next`, and the way there.
 Eigen::Vector4d NetworkTarget(Kind kind, const ArmPose& last, const ArmPose& next);
+/// The pose that the outputs lead to from `last`.
 ArmPose Applied(Kind kind, const ArmPose& last, const Eigen::Vector4d& output);
 
+/// A recurrent network that estimates an arm's pose frame by frame.
 struct ArmNetwork {
   Kind kind = Kind::kPaper;
   Eigen::Vector3d elbow_axis_U = Eigen::Vector3d::UnitZ();
@@ -69,6 +73,7 @@ struct ArmNetwork {
 /// "arm_paper" or "arm_residual", as a model's kind.
 std::string KindName(Kind kind);
 
+/// Appends the network to a model file's tensors.
 void AppendTensors(const ArmNetwork& network, model::Model& model);
 /// InvalidData where the model is of another kind or its tensors do not fit; `origin` names it.
 Result<ArmNetwork> MakeArmNetwork(const model::Model& model, const std::string& origin);
@@ -77,25 +82,27 @@ Result<ArmNetwork> MakeArmNetwork(const model::Model& model, const std::string& 
 struct Sequence {
   std::vector<FrameInput> inputs;
   std::vector<ArmPose> truth;
-  std::vector<Eigen::Vector3d> forearm;  ///< Of the truth: elbow to fist.
+  std::vector<Eigen::Vector3d> forearm;  ///< Elbow to fist in the truth.
   double step_s = 0;
 };
 
+/// Options of an arm network's training.
 struct TrainingOptions {
-  /// Of scheduled teacher forcing (Bengio et al. 2015): in the first the network receives the true
-  /// last pose, in the last nothing but its own estimates. One: teacher forcing alone.
+  /// Rounds of scheduled teacher forcing (Bengio et al. 2015): in the first the network receives
+  /// the true last pose, in the last nothing but its own estimates. One: teacher forcing alone.
   int rounds = 4;
   double noise_rad = 0.2;  ///< On the true poses it receives, the same for two seconds.
   int every = 12;          ///< Frames from one row of training to the next.
   int hidden_max = 10;
 };
 
+/// A trained arm network with its closed-loop error.
 struct Trained {
   ArmNetwork network;
   int hidden_units = 0;
-  int round = 0;           ///< Of which it comes, from 0.
+  int round = 0;           ///< The round it comes from, from 0.
   double closed_loop = 0;  ///< RMS error of upper, hinge and forearm on the last fifths.
-  std::size_t rows = 0;    ///< Of the last round's training.
+  std::size_t rows = 0;    ///< Rows in the last round's training.
 };
 
 /// The paper's: one round, no noise.

@@ -21,7 +21,7 @@ namespace footing::learning {
 namespace {
 
 constexpr int kRounds = 8;
-constexpr double kOutlierMedians = 2.5;  // Of the median distance.
+constexpr double kOutlierMedians = 2.5;  // Limit in multiples of the median distance.
 
 Eigen::Matrix2d Turn(double yaw_rad) {
   return body::AxisRotation(body::Axis::kZ, yaw_rad).topLeftCorner<2, 2>();
@@ -81,12 +81,12 @@ namespace {
 namespace sensors = virtual_sensors;
 
 constexpr double kPairRateHz = 20;
-constexpr double kLoadedShare = 0.15;  // Of the weight, on a foot whose place counts.
+constexpr double kLoadedShare = 0.15;  // Least share of the weight on a foot whose place counts.
 constexpr Eigen::Index kFewestPairs = 100;
 constexpr double kMostYawRad = DegreesToRadians(60);
 constexpr double kMostOffM = 0.1;
 
-/// What the ground feels of a motion.
+/// Ground reaction of a motion.
 struct Felt {
   ForceTrace trace;
   std::array<Eigen::Matrix2Xd, 2> cop_m;  ///< A column a frame, as the trace.

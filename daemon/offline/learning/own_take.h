@@ -20,8 +20,8 @@ namespace footing::learning {
 struct FloorPlacement {
   double yaw_rad = 0;
   Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
-  double rms_m = 0;         ///< What is left, of the points that count.
-  Eigen::Index points = 0;  ///< That count.
+  double rms_m = 0;         ///< Residual of the points that count.
+  Eigen::Index points = 0;  ///< Points that count.
 };
 
 /// Least squares of `from` on `to`, a column a pair, without the pairs that are left far off: feet
@@ -35,7 +35,7 @@ motion::Motion Placed(const motion::Motion& motion, const FloorPlacement& placem
 struct OwnTake {
   RecordedSession session;
   momentum::TPose t_pose;
-  body::Body body;        ///< Of the weight in the T-pose.
+  body::Body body;        ///< Scaled to the weight in the T-pose.
   motion::Motion motion;  ///< In W of the boards.
   TimeAlignment alignment;
   FloorPlacement placement;
@@ -60,10 +60,11 @@ Result<OwnTake> MirrorImage(const OwnTake& take);
 /// way between the feet's COPs in the T-pose; a clip for each span in which both boards speak.
 std::vector<LoadClip> OwnLoads(const OwnTake& take);
 
+/// Settings of the examples made from an own take.
 struct OwnExampleSettings {
   PoseCues cues = PoseCues::kMomentum;
   double rate_hz = 60;
-  double hand_noise_m = 0.01;  ///< Of the motion's fists, where no tracker measured hands.
+  double hand_noise_m = 0.01;  ///< Noise of the motion's fists, where no tracker measured hands.
   double piece_s = 10;         ///< Frames of one piece are in one fold,
   int first_piece = 0;         ///< numbered from here on.
   double settled_s = 1.5;      ///< After the T-pose and the motion's first frame: left out.

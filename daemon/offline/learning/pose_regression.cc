@@ -19,7 +19,7 @@ namespace footing::learning {
 namespace {
 
 constexpr std::array<double, 6> kRidges{0.003, 0.01, 0.03, 0.1, 0.3, 1.0};
-constexpr double kLeastSpread = 1e-6;  // Of an input that never changes.
+constexpr double kLeastSpread = 1e-6;  // An input below this never changes.
 constexpr double kMostScaled = 4;
 
 /// Scaled inputs and centred outputs, a column an example, with the sums that ridge regression
@@ -53,7 +53,7 @@ Eigen::VectorXd MeanOf(const Eigen::MatrixXd& columns, const Eigen::VectorXd& we
   return columns * weights / weights.sum();
 }
 
-/// Of errors, a column an example.
+/// Weighted root mean square of errors, a column an example.
 double RootMeanSquare(const Eigen::MatrixXd& errors, const Eigen::VectorXd& weights) {
   return std::sqrt(errors.colwise().squaredNorm().dot(weights) / weights.sum());
 }

@@ -25,7 +25,7 @@ struct RandomWaves {
 
 /// Ridge regression (Hoerl & Kennard 1970) whose penalty is chosen by leaving out folds.
 struct RidgeFit {
-  Eigen::VectorXd mean, scale;  ///< Of the inputs: (x - mean) scale, cut at +-4.
+  Eigen::VectorXd mean, scale;  ///< Input scaling: (x - mean) scale, cut at +-4.
   Eigen::MatrixXd weights;      ///< outputs x inputs, on all examples.
   Eigen::VectorXd offset;
   Eigen::MatrixXd waves;  ///< waves x inputs: cos(waves x + phases), of scaled inputs.
@@ -44,16 +44,16 @@ RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& 
                   int fold_count, const Eigen::VectorXd& output_scale,
                   const RandomWaves& waves = {}, const Eigen::VectorXd& weights = {});
 
-/// By what a pose is to be foreseen: hands and feet alone, or with the momentum too.
+/// Cues that a pose is predicted from: hands and feet alone, or with the momentum too.
 enum class PoseCues { kPosture, kMomentum };
 
-/// What a pose regression is trained with: a column a frame.
+/// Training data of a pose regression: a column a frame.
 struct PoseExamples {
   std::vector<reconstruction::Features::Values> features;
   /// The root from the estimated centre of mass in parts of the root's height, then the angles.
   std::vector<Eigen::VectorXd> poses;
   std::vector<int> folds;  ///< Frames of one fold are predicted without it; from 0 on.
-  /// Whose frames they are: all people count alike, however long each was recorded. Frames of
+  /// Person of each frame: all people count alike, however long each was recorded. Frames of
   /// kOwn count once each.
   std::vector<int> people;
   static constexpr int kOwn = -1;
@@ -64,10 +64,11 @@ struct PoseExamples {
            int fold, int person = kOwn);
   void Append(const PoseExamples& other);
 };
-inline constexpr int kFolds = 5;  ///< Of pieces of time, where there are too few people.
+inline constexpr int kFolds = 5;  ///< Pieces of time, where there are too few people.
 
 inline constexpr RandomWaves kPoseWaves{.count = 500};
 
+/// A pose regression with the principal axes of its errors.
 struct FittedPoseRegression {
   reconstruction::PoseRegression regression;
   Eigen::MatrixXd rest_components;  ///< Rows; principal axes of the errors, scaled.
@@ -87,7 +88,7 @@ FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen
 void AppendTensors(const FittedPoseRegression& fitted, model::Model& model,
                    const std::string& prefix = "");
 
-/// What an arm regression is trained with, both arms as left ones.
+/// Training data of an arm regression, both arms as left ones.
 struct ArmExamples {
   std::vector<arms::ArmFeatures::Values> features;
   std::vector<arms::Directions> directions;
@@ -95,6 +96,7 @@ struct ArmExamples {
   int fold_count = 0;      ///< At least two.
 };
 
+/// An arm regression with its ridge and errors.
 struct FittedArm {
   arms::ArmModel model;
   double ridge = 0, error = 0, spread = 0;  ///< As of RidgeFit.
@@ -124,15 +126,15 @@ std::vector<float> ToFloats(const Eigen::MatrixXd& values);  ///< Column by colu
 struct PoseBasis {
   std::vector<std::string> dofs;  ///< Names of the pose's entries.
   Eigen::VectorXd mean;           ///< m and rad.
-  Eigen::VectorXd scale;          ///< By which an entry counts; a metre is as much as 2.5 rad.
+  Eigen::VectorXd scale;          ///< Weight of an entry; a metre is as much as 2.5 rad.
   Eigen::MatrixXd components;     ///< Rows of length 1, at right angles.
-  Eigen::VectorXd variances;      ///< Of each component's a, divided by the number of poses.
+  Eigen::VectorXd variances;  ///< Variance of each component's a, divided by the number of poses.
 
   /// Components that hold the part `fraction` of the variance.
   int ComponentsFor(double fraction) const;
 };
 
-/// Of poses in columns: aligned motions (alignment.h) of one skeleton layout. The sign of a
+/// Basis of poses in columns: aligned motions (alignment.h) of one skeleton layout. The sign of a
 /// component is such that its greatest entry is positive.
 PoseBasis MakeBasis(const Eigen::MatrixXd& poses, std::vector<std::string> dofs);
 

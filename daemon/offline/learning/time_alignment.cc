@@ -66,18 +66,18 @@ std::vector<Stomp> FindStomps(const ForceTrace& trace) {
 namespace {
 
 constexpr double kCutoffHz = 6;     // Both are as smooth as Follow makes a motion's.
-constexpr double kIntervalS = 0.1;  // By which stomps may be off: 50 ms each.
-constexpr double kMatchS = 0.05;    // In the end.
+constexpr double kIntervalS = 0.1;  // Between matching stomps in the search: 50 ms each.
+constexpr double kMatchS = 0.05;    // Between matching stomps in the result.
 constexpr double kLeastOverlapS = 5;
 constexpr std::size_t kMostCandidates = 400;
-constexpr int kCoarseStride = 4;          // Of the rate, in the search.
-constexpr double kPieceS = 8, kHopS = 4;  // Of what is moved until it correlates best.
+constexpr int kCoarseStride = 4;          // Samples skipped in the search.
+constexpr double kPieceS = 8, kHopS = 4;  // Pieces that are moved until they correlate best.
 constexpr double kLagS = 0.12;            // At most, and in such steps:
 constexpr double kLagStepS = 0.01;
 constexpr double kPieceCorrelation = 0.6;
-constexpr double kPieceSpread = 0.02;  // Of the weight: less means nothing.
+constexpr double kPieceSpread = 0.02;  // In parts of the weight: less means nothing.
 constexpr int kPasses = 3;
-constexpr double kOutlier = 3.5;  // Of the pieces' usual distance from the line.
+constexpr double kOutlier = 3.5;  // In multiples of the pieces' usual distance from the line.
 constexpr double kLeastSdS = 5e-4;
 
 struct Signal {
@@ -391,7 +391,7 @@ motion::Motion Aligned(const motion::Motion& motion, const body::Landmarks& land
     lowest_m(t) = std::min(place(left_toe).z(), place(right_toe).z());
   }
   const Eigen::Vector2d left_mean_W = left_W.rowwise().mean();
-  const double yaw_rad = std::atan2(-left_mean_W.x(), left_mean_W.y());  // Of the facing.
+  const double yaw_rad = std::atan2(-left_mean_W.x(), left_mean_W.y());  // Yaw of the facing.
   const Eigen::Matrix3d R = body::AxisRotation(body::Axis::kZ, -yaw_rad);
   const Eigen::Matrix2Xd feet_m = R.topLeftCorner<2, 2>() * feet_W_m;
   const Eigen::Vector3d origin_m(Quantile(feet_m.row(0), 0.5), Quantile(feet_m.row(1), 0.5),

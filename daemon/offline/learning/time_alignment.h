@@ -19,9 +19,9 @@ namespace footing::learning {
 /// The vertical force under each foot of somebody at equal steps, whoever measured it: boards under
 /// the feet, or inverse dynamics of a recorded motion.
 struct ForceTrace {
-  std::string name;      ///< Of its file, for errors.
+  std::string name;      ///< Name of its file, for errors.
   double rate_hz = 100;  ///< Time 0 is the first column.
-  double weight_n = 0;   ///< Of the person.
+  double weight_n = 0;   ///< Weight of the person.
   Eigen::Matrix2Xd load_n;
   std::vector<bool> valid;  ///< A column each: false where nothing was measured (loads are held).
 
@@ -52,7 +52,7 @@ struct TimeAlignment {
   double drift = 0;        ///< Positive: the recording's clock is the faster one.
   double residual_s = 0;   ///< Root mean square of what is left, between pieces of eight seconds,
   int pieces = 0;          ///< of which there are so many; one or two say nothing of it.
-  double correlation = 0;  ///< Of the vertical forces, where both are.
+  double correlation = 0;  ///< Correlation of the vertical forces, where both are.
   double overlap_s = 0;
   int stomps_recording = 0, stomps_motion = 0;
   int stomps_both = 0;  ///< Found in both, within 50 ms of each other.
@@ -90,16 +90,17 @@ struct BoardReading {
   std::array<double, 4> corners_n{};
 };
 
+/// A tracked hand's place in W, with its standard deviation.
 struct HandReading {
   double time_s = 0;
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d sd_m = Eigen::Vector3d::Zero();
 };
 
-/// What two boards and two hand trackers measured of one person, in the order of time from the
+/// Measurements of one person by two boards and two hand trackers, in the order of time from the
 /// first reading of a board on. 0 is left.
 struct RecordedSession {
-  std::string name;  ///< Of the file.
+  std::string name;  ///< Name of the file.
   std::array<std::vector<BoardReading>, 2> boards;
   std::array<std::array<Eigen::Vector2d, 4>, 2> cells_W_m;  ///< Places of the corners' sensors.
   std::array<std::vector<HandReading>, 2> hands;            ///< May be empty.
@@ -118,7 +119,7 @@ std::optional<HandReading> HandAt(const RecordedSession& session, std::size_t si
 /// The first T-pose that a live calibration would have taken.
 std::optional<momentum::TPose> FindTPose(const RecordedSession& session);
 
-/// Of a person of this weight, 100 a second.
+/// Forces measured by the boards in a session of a person of this weight, 100 columns a second.
 ForceTrace TraceOf(const RecordedSession& session, double weight_n);
 
 }  // namespace footing::learning

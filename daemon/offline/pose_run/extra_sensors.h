@@ -50,25 +50,27 @@ class KinectBody {
   std::array<reconstruction::HandTrack, virtual_sensors::KinectSkeleton::kPoints> tracks_;
 };
 
-/// What a lab may add to boards and hands (docs/evaluation/pose.md). Their random numbers are their
-/// own: a run with them has the boards and hands of the run without.
-/// Source of the place of the head.
+/// Sensors that a lab may add to boards and hands (docs/evaluation/pose.md). Their random numbers
+/// are their own: a run with them has the boards and hands of the run without. Source of the place
+/// of the head.
 enum class HeadDevice {
   kNone,
   kSphere,  ///< A luminous sphere on a cap, as the camera of the hands sees it.
   kKinect,  ///< The head of a Kinect's skeleton: late, with white noise and a slow offset.
 };
 
+/// Errors of a tracker of the head.
 struct HeadErrors {
   double noise_m = 0.01;  ///< White, along each axis; of kSphere.
-  /// Of kSphere: how far above the middle of the head the cap has it in the mean, and a standard
+  /// For kSphere: how far above the middle of the head the cap has it in the mean, and a standard
   /// deviation along each axis of the head. Constant, and not known.
   double above_m = 0.12, seat_sd_m = 0.02;
-  /// Of kSphere: how far the head is in the T-pose from where the body's T-pose has it; a standard
+  /// For kSphere: how far the head is in the T-pose from where the body's T-pose has it; a standard
   /// deviation along each axis of W.
   double t_pose_sd_m = 0.02;
 };
 
+/// A simulated tracker of the head.
 class HeadTracker {
  public:
   /// `step_s` between frames.
@@ -90,12 +92,13 @@ class HeadTracker {
 /// Errors of a belt beside those of its Wiimote with MotionPlus (virtual_sensors::HeldErrorConfig).
 struct BeltErrors {
   virtual_sensors::HeldErrorConfig device;
-  /// Of the belt about each axis of the pelvis, over skin and clothes: it comes and goes within
-  /// such a time.
+  /// Slip of the belt about each axis of the pelvis, over skin and clothes: it comes and goes
+  /// within such a time.
   double slip_rad = 0.05;
   double slip_s = 0.5;
 };
 
+/// A simulated Wiimote with MotionPlus on a belt.
 class Belt {
  public:
   Belt(const virtual_sensors::Scene& scene, const BeltErrors& errors, std::uint64_t seed);

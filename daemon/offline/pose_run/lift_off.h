@@ -36,7 +36,7 @@ class LegScore {
   std::array<double, kLegJoints> square_m2_{}, variance_m2_{}, nees_{};
 };
 
-/// What becomes of a leg once its foot has left the ground: some times after, all the while, and
+/// Errors of a leg once its foot has left the ground: some times after, all the while, and
 /// in kicks. A foot leaves when its load falls to 20 N or less after at least 0.1 s of more; a kick
 /// is a foot off the ground whose ankle moves faster than 2 m/s.
 class LiftOffs {
@@ -60,7 +60,7 @@ class LiftOffs {
   struct Foot {
     bool started = false, aloft = false, kicking = false;
     double stood_s = 0, aloft_s = 0;
-    std::size_t next = 0;  ///< Of kAfterS.
+    std::size_t next = 0;  ///< Index into kAfterS.
     Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();
   };
 

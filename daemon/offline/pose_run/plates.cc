@@ -182,7 +182,7 @@ constexpr double kLeastSupportedS = 0.5;
 /// The first frames of a clip have the forces of leaving the T-pose in them: the low-pass of the
 /// motion spreads them so far.
 constexpr double kRunInS = 0.15;
-constexpr double kMissingShare = 0.25;  // Of the weight: more than inverse dynamics is wrong by.
+constexpr double kMissingShare = 0.25;  // Part of the weight: beyond inverse dynamics' errors.
 constexpr double kMissingSpanS = 0.2;   // Span of the mean: it smears impacts.
 constexpr double kBesideM = 0.08;       // Further from a foot than a COP under it can be.
 constexpr double kElsewhereM = 0.4;     // Forces of another place or trial.
@@ -274,7 +274,7 @@ Stretch Longest(const std::vector<bool>& supported) {
   return best;
 }
 
-/// What the boards feel at one time: simulated in the T-pose, measured in the clip. While the
+/// Forces on the boards at one time: simulated in the T-pose, measured in the clip. While the
 /// T-pose is left, the left foot's share of the load and the COPs go over by what they differ
 /// later. Who begins in the air has stepped off the boards to get there.
 class Feet {
@@ -462,7 +462,7 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
 namespace {
 
 constexpr double kLeastS = 5;
-constexpr double kMostMps = 0.3;  // Of a COM at rest.
+constexpr double kMostMps = 0.3;  // Fastest COM that counts as at rest.
 
 }  // namespace
 
@@ -526,7 +526,7 @@ Vertical VerticalPath(const ForceCourse& course, const Eigen::VectorXd& height_m
   const double step_s = 1 / course.rate_hz;
   const Eigen::VectorXd t_s = Times(frames, step_s);
   const Eigen::VectorXd fall_m = -0.5 * kStandardGravityMps2 * t_s.cwiseAbs2();
-  Eigen::MatrixX3d terms(frames, 3);  // Of the height, the velocity, and the mass inverted.
+  Eigen::MatrixX3d terms(frames, 3);  // For height, velocity and inverse mass.
   terms << Eigen::VectorXd::Ones(frames), t_s, IntegratedTwice(course.force_n.row(2), step_s);
   const Eigen::Vector3d constants = terms.colPivHouseholderQr().solve(height_m - fall_m);
   return {1 / constants(2), terms * constants + fall_m};
@@ -538,7 +538,7 @@ Eigen::VectorXd LevelPath(const Eigen::VectorXd& acceleration_mps2, const Eigen:
                           double step_s) {
   const Eigen::Index frames = cop_m.size();
   const Eigen::VectorXd t_s = Times(frames, step_s);
-  Eigen::MatrixX3d terms(frames, 3);  // Of the place, the velocity and a constant acceleration.
+  Eigen::MatrixX3d terms(frames, 3);  // For place, velocity and constant acceleration.
   terms << Eigen::VectorXd::Ones(frames), t_s, 0.5 * t_s.cwiseAbs2();
   const Eigen::VectorXd moved_m = IntegratedTwice(acceleration_mps2, step_s);
   Eigen::MatrixX3d of_cop = terms;

@@ -21,7 +21,7 @@ struct PlateUse {
   double beside_m = 0;  ///< Mean distance of the COP from the line heel to ball of that foot.
 };
 
-/// What the plates felt under each foot, at the forces' rate from the clip's first frame on, in W
+/// Forces of the plates under each foot, at the forces' rate from the clip's first frame on, in W
 /// of the scene. A sample of a plate under 20 N counts as nothing: its COP means nothing.
 struct FeltForces {
   double rate_hz = 0;
@@ -41,19 +41,19 @@ FeltForces FeelPlates(const motion::Motion& clip, const virtual_sensors::Scene& 
                       const motion::GroundForces& forces);
 
 /// Measured force plates in place of inverse dynamics.
-/// What became of a trial's plates.
+/// Use of a trial's plates and their agreement with the motion.
 struct PlateReport {
   std::vector<PlateUse> plates;
   double begin_s = 0, end_s = 0;  ///< The stretch that is performed, on the motion's clock.
-  /// Of the time that motion and forces have in common: where the plates carry what the motion
-  /// needs, within a quarter of the weight.
+  /// Share of the time that motion and forces have in common: where the plates carry what the
+  /// motion needs, within a quarter of the weight.
   double supported_share = 1;
-  double begin_mps = 0;    ///< Of the centre of mass where the stretch begins.
-  double mass_kg = 0;      ///< Of the plates: their mean over the stretch.
+  double begin_mps = 0;    ///< Speed of the centre of mass where the stretch begins.
+  double mass_kg = 0;      ///< Mass by the plates: their mean over the stretch.
   double force_rms_n = 0;  ///< Vertical: measured less inverse dynamics.
   /// The same, of a body as heavy as the measured forces have it in their mean.
   double force_own_mass_rms_n = 0;
-  Eigen::Vector2d cop_rms_m;   ///< Of both feet together, the same: along x and y.
+  Eigen::Vector2d cop_rms_m;   ///< COP of both feet together, the same: along x and y.
   Eigen::Vector2d cop_bias_m;  ///< The mean of that.
   std::vector<std::string> warnings;
 };
@@ -83,7 +83,7 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
 Eigen::Matrix3Xd ComByPlates(const PoseRun& run, const FeltForces& felt, double begin_s);
 
 /// The centre of mass by the forces of plates alone, without masses of segments.
-/// What all plates together measured, a column a frame, W.
+/// Forces of all plates together, a column a frame, W.
 struct ForceCourse {
   double rate_hz = 0;
   Eigen::Matrix3Xd force_n;  ///< On the person, with the shear.

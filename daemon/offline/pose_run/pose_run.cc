@@ -280,7 +280,7 @@ Result<InsoleRun> RunInsoles(const motion::Motion& clip, const Settings& setting
 namespace {
 
 constexpr double kLeastStandingS = 1;
-constexpr double kWeightBand = 0.06;  // Of the mean load: breathing and sway stay far below.
+constexpr double kWeightBand = 0.06;  // Part of the mean load: breathing and sway are less.
 constexpr double kSwayM = 0.04;
 constexpr double kStandingMassOff = 0.1;
 constexpr double kMostOffsetM = 0.08;
@@ -290,7 +290,7 @@ struct Felt {
   Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
 };
 
-/// Of all plates together at one sample.
+/// Load and COP of all plates together at one sample.
 Felt All(const motion::GroundForces& forces, Eigen::Index sample) {
   Felt felt;
   for (const motion::PlateForces& plate : forces.plates) {
@@ -366,7 +366,7 @@ namespace sensors = virtual_sensors;
 
 namespace {
 
-/// Of a Wiimote in a fist, or strapped.
+/// Errors of a Wiimote in a fist, or strapped.
 sensors::HeldErrorConfig ErrorsOf(arms::Place place, const Settings& settings) {
   sensors::HeldErrorConfig config;
   if (settings.perfect_devices) config = sensors::HeldErrors::None();
@@ -454,7 +454,7 @@ namespace {
 using body::Landmark;
 
 constexpr double kBentRad = 35 * kPi / 180;
-constexpr double kCrouchedShare = 0.9;  // Of the T-pose's height of the COM.
+constexpr double kCrouchedShare = 0.9;  // In parts of the T-pose's height of the COM.
 constexpr double kArmMps = 0.5;
 constexpr double kWalkingMps = 0.1;
 constexpr double kSpanS = 0.1;
@@ -465,7 +465,7 @@ enum Rule { kAirborne, kOneFoot, kBent, kCrouched, kArms, kMoving, kStill };
 const std::vector<std::string> kRules{"airborne", "one_foot", "bent", "crouched",
                                       "arms",     "moving",   "still"};
 
-/// What the rules look at.
+/// Measures of a pose that the rules look at.
 struct Shape {
   Eigen::Vector3d trunk, com_m;
   std::array<Eigen::Vector3d, 2> wrists;  ///< From the chest.

@@ -27,8 +27,8 @@
 #include "daemon/simulation/reconstruction/insole_walk.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
-/// What a recorded motion would have given two boards and two hand trackers, frame by frame, beside
-/// the truth: to evaluate the reconstruction on, and to train its models with.
+/// Measurements of simulated boards and hand trackers during a recorded motion, frame by frame,
+/// beside the truth: to evaluate the reconstruction on, and to train its models with.
 namespace footing::pose_run {
 
 /// A foot or plate under more than this is loaded: below, a centre of pressure is too coarse.
@@ -42,35 +42,37 @@ enum class HandDevice {
   kKinect,   ///< Places 30 times a second, late, with white noise and a slow offset.
 };
 
+/// Person, devices and their errors in a simulated run.
 struct Settings {
   double mass_kg = 75;
   std::optional<double> height_m = std::nullopt;
-  double rate_hz = 60;   ///< Of the inputs.
+  double rate_hz = 60;   ///< Rate of the inputs.
   double loop_s = 0;     ///< Forwards and backwards for this duration; 0: once.
   bool limited = false;  ///< Boards end at their sensors; else as if they had no edge.
   bool floor = false;    ///< A foot whose COP is beyond its board's plate stands on the floor.
   bool hands = true;
   HandDevice hand_device = HandDevice::kMove;
-  /// Of kKinect: the joints of its skeleton, too, with what the body hides of it from the camera.
+  /// With kKinect: the joints of its skeleton, too, with what the body hides of it from the camera.
   bool joints = false;
-  virtual_sensors::KinectOptions kinect = {};  ///< Of the joints.
+  virtual_sensors::KinectOptions kinect = {};  ///< Options of the joints.
   double hand_noise_m = 0.01;                  ///< White, of each axis; of kMove.
   HeadDevice head = HeadDevice::kNone;         ///< A tracker of the head alone.
   bool belt = false;                           ///< A Wiimote with MotionPlus on a belt.
   bool perfect_devices =
-      false;  ///< Of kWiimote and kStraps: they and their mounting have no errors.
+      false;  ///< For kWiimote and kStraps: they and their mounting have no errors.
   virtual_sensors::CellErrorConfig errors;
   // The boards are not quite where they are configured to be.
   double gap_error_m = 0;    ///< Configured further apart by this.
   double yaw_error_rad = 0;  ///< The right one turned to the left.
-  double mass_error = 0;     ///< What the T-pose weighs too much, as a part.
-  std::uint64_t seed = 1;    ///< Of the hands.
+  double mass_error = 0;     ///< Excess of the T-pose's weight, as a part.
+  std::uint64_t seed = 1;    ///< Seed of the hands.
 };
 
-/// Of the devices on each arm, by arms::Place.
+/// Readings of the devices on each arm, by arms::Place.
 using ArmReadings =
     std::array<std::array<std::vector<arms::HandReading>, arms::kPlaces>, arms::kArms>;
 
+/// True load, COP and joints of a foot, W.
 struct TrueFoot {
   double load_n = 0;
   Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
@@ -78,30 +80,32 @@ struct TrueFoot {
   Eigen::Vector3d toe_m = Eigen::Vector3d::Zero();
 };
 
+/// One frame: the reconstruction's inputs beside the true pose.
 struct Frame {
   reconstruction::Inputs inputs;
   Eigen::VectorXd q;
   Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< About C, kg m^2/s.
   std::array<TrueFoot, momentum::kFeet> feet;
-  ArmReadings readings;  ///< Of kWiimote or kStraps: those since the frame before.
-  /// Of kKinect: the newest exposure's hands and joints (KinectPoints), which has not come yet.
+  ArmReadings readings;  ///< With kWiimote or kStraps: those since the frame before.
+  /// With kKinect: the newest exposure's hands and joints (KinectPoints), which has not come yet.
   std::vector<virtual_sensors::KinectPoint> kinect = {};
   bool kinect_crouches = false;  ///< In it the legs are lost.
 };
 
-/// What the person does in each frame (activity.h).
+/// Activity of the person in each frame (activity.h).
 struct Activities {
   std::vector<std::string> names;
   std::vector<int> of_frame;  ///< Index of a name, or -1; empty: not given.
 };
 
+/// A simulated run of a person, frame by frame.
 struct PoseRun {
   body::Body body;
   double rate_hz = 60;
   std::vector<Frame> frames;    ///< Begins with kStandS in the T-pose.
   double reading_s = 0;         ///< From one reading of a Wiimote to the next; 0: there are none.
-  double outside_share = 0;     ///< Of loaded feet whose COP is beyond the sensors.
+  double outside_share = 0;     ///< Share of loaded feet whose COP is beyond the sensors.
   std::size_t judged_from = 0;  ///< The first frame after the calibration.
   double clock_offset_s = 0;    ///< Time on the motion's clock less the frames' time_s.
   Activities activities;
@@ -129,7 +133,7 @@ using FootForcesAt = std::function<std::array<virtual_sensors::FootForce, moment
 /// By inverse dynamics. `scene` must outlive it.
 FootForcesAt SimulatedForces(const virtual_sensors::Scene& scene);
 
-/// What boards under these forces and the hands of a staged scene measure.
+/// Measurements of boards under these forces and of the hands in a staged scene.
 PoseRun RunScene(const virtual_sensors::Scene& scene, const Settings& settings,
                  const FootForcesAt& forces_at);
 
@@ -156,17 +160,19 @@ struct Crouch {
   double bend_rad = 0;
 };
 
-/// Of the true poses, from that frame on, where it bends most with both feet on the ground. Frame
+/// Deepest crouch of the true poses, from that frame on, with both feet on the ground. Frame
 /// `from` where it never bends or stands.
 Crouch DeepestCrouch(const PoseRun& run, std::size_t from);
 
+/// One frame: insoles and hands beside the true pose and loads.
 struct InsoleFrame {
   reconstruction::InsoleInputs inputs;
   Eigen::VectorXd q;
   std::array<double, momentum::kFeet> load_n{};
 };
 
-/// What a recorded motion would have given two insoles and two hand trackers, beside the truth.
+/// Measurements of simulated insoles and two hand trackers during a recorded motion, beside the
+/// truth.
 struct InsoleRun {
   body::Body body;
   double rate_hz = 60;
@@ -218,14 +224,14 @@ void Feed(const ArmReadings& readings, double reading_s, arms::ArmTracker& track
 /// model.
 void EstimateArms(const std::optional<arms::ArmModel>& model, PoseRun& run);
 
-/// What a recorded motion would have given such devices alone, beside the truth.
+/// Measurements of simulated devices on the arms alone during a recorded motion, beside the truth.
 struct ArmFrame {
   ArmReadings readings;
   Eigen::VectorXd q;
 };
 struct ArmRun {
   body::Body body;
-  double rate_hz = 60;           ///< Of the frames,
+  double rate_hz = 60;           ///< Rate of the frames,
   double reading_s = 0;          ///< and the time from one reading to the next.
   std::size_t aligned = 0;       ///< The frame at whose end the T-pose is known.
   std::vector<ArmFrame> frames;  ///< Begins with kStandS in the T-pose.
@@ -235,8 +241,8 @@ struct ArmRun {
 Result<ArmRun> RunArms(const motion::Motion& clip, const Settings& settings,
                        const std::string& origin, const Places& places = kFists);
 
-/// What the person does, frame by frame: scores of a clip that mostly stands say little of squats.
-/// [begin_s, end_s) on the motion's clock.
+/// Activity of the person, frame by frame: scores of a clip that mostly stands say little of
+/// squats. [begin_s, end_s) on the motion's clock.
 struct ActivitySpan {
   double begin_s = 0, end_s = 0;
   std::string activity;

@@ -73,7 +73,7 @@ Result<std::string> SkeletonBeside(const fs::path& path) {
   return found->string();
 }
 
-/// Of files of several layouts those of another one than the standard are fitted to it.
+/// Clips of another layout than the standard are fitted to it when there are several layouts.
 Result<void> UnifyLayouts(std::vector<Clip>& clips) {
   const auto of_first = [&clips](const Clip& clip) {
     return body::DofNames(clip.motion.skeleton) == body::DofNames(clips.front().motion.skeleton);
@@ -210,9 +210,9 @@ using learning::LoadClip;
 
 constexpr const char* kAxes[] = {"x", "y"};
 constexpr double kValidationPart = 0.2;  // The end of every clip.
-constexpr std::size_t kRoundsKept = 3;   // Whose examples are trained on, beside those with noise.
-constexpr double kEnoughComS = 180;      // Of the paper's, section 4.2.
-constexpr double kRestartS = 10;         // Duration of a run on its own outputs in training.
+constexpr std::size_t kRoundsKept = 3;  // Newest rounds that are trained on, beside noisy examples.
+constexpr double kEnoughComS = 180;     // Motion that the paper trains on, s (section 4.2).
+constexpr double kRestartS = 10;        // Duration of a run on its own outputs in training.
 
 /// A hidden unit fits the people of the training: it makes the COM of a person left out worse
 /// forward (docs/models.md).
@@ -244,7 +244,7 @@ std::vector<LoadClip> Loads(const std::vector<Clip>& clips, bool mirrored, std::
   return loads;
 }
 
-/// What the own boards measured, with its mirror image, `weight` times.
+/// Adds the recordings of the user's own boards, with their mirror images, `weight` times.
 Result<void> AddOwn(const TrainingSet& set, bool mirror, std::vector<LoadClip>& loads) {
   for (const OwnRecording& own : set.own) {
     std::vector<learning::OwnTake> takes{own.take};
@@ -276,10 +276,10 @@ Recordings SplitClips(const std::vector<LoadClip>& clips) {
   return recordings;
 }
 
-/// What one axis learns from.
+/// Training data of one axis.
 struct Lesson {
   learning::Examples noisy, noisy_validation;
-  std::vector<learning::Examples> rounds;  ///< Of own outputs, the latest last.
+  std::vector<learning::Examples> rounds;  ///< Examples on own outputs, the latest last.
 };
 
 Lesson FirstLesson(const Recordings& recordings, int axis, double noise_m,
@@ -503,7 +503,7 @@ std::string ActivityOf(const Clip& clip) {
   return name.substr(0, name.find('_'));
 }
 
-/// What one take came to; plain, since ranks share it.
+/// Scores of one take; plain, since ranks share it.
 struct ScoredTake {
   std::size_t take = 0;
   PoseTally tally;
@@ -514,7 +514,7 @@ class LeaveOneOut {
   LeaveOneOut(std::vector<Clip> clips, std::uint64_t seed)
       : clips_(std::move(clips)), seed_(seed) {}
 
-  /// What hands and feet show does not depend on who is left out.
+  /// The features of hands and feet do not depend on who is left out.
   Result<void> Prepare() {
     for (const Clip& clip : clips_) all_.push_back(&clip);
     const auto basis = TrainBasis(clips_);
@@ -585,10 +585,10 @@ class LeaveOneOut {
   std::uint64_t seed_;
   std::vector<const Clip*> all_;
   std::vector<PoseTake> takes_;
-  std::vector<learning::PoseExamples> postures_;  ///< Of each take.
+  std::vector<learning::PoseExamples> postures_;  ///< Examples of each take.
 };
 
-/// Of each activity of a person so many takes as the options say.
+/// Keeps every `every`-th take of each activity of a person.
 std::vector<Clip> Thinned(std::vector<Clip> clips, int every) {
   std::vector<Clip> kept;
   std::map<std::string, int> seen;

@@ -16,7 +16,7 @@ namespace footing::train {
 
 /// A motion file, aligned, and whose it is.
 struct Clip {
-  std::string name;     ///< Of the file, without its folder.
+  std::string name;     ///< Name of the file, without its folder.
   std::string subject;  ///< The name up to the first '_': "13" of 13_29.amc.
   model::DataFile file;
   motion::Motion motion;
@@ -27,6 +27,7 @@ struct Clip {
 /// the T-pose: motion that two boards can be under.
 bool StaysInPlace(const Clip& clip);
 
+/// Folders of motion files, and subjects to leave out.
 struct MotionOptions {
   std::vector<std::string> folders;
   std::vector<std::string> exclude;  ///< Subjects.
@@ -34,10 +35,11 @@ struct MotionOptions {
 
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
 
+/// Motions for training, and those held back.
 struct Clips {
   std::vector<Clip> train;
-  std::vector<Clip> excluded;         ///< Of the excluded subjects: to test on, never to train on.
-  std::vector<std::string> subjects;  ///< Of `train`.
+  std::vector<Clip> excluded;  ///< Clips of the excluded subjects: to test on, never to train on.
+  std::vector<std::string> subjects;  ///< Subjects in `train`.
 };
 
 /// One .bvh, .amc, .trc or .c3d; an AMC's skeleton is looked for beside it if none is given.
@@ -57,13 +59,14 @@ Result<Clips> ReadClips(const MotionOptions& options);
 /// The data files of a model: those of the training.
 std::vector<model::DataFile> DataFiles(const std::vector<Clip>& clips);
 
+/// A basis of poses, with the number of poses that it is computed from.
 struct TrainedBasis {
   learning::PoseBasis basis;
   Eigen::Index poses = 0;
 };
 
-/// Of the clips and their mirror images, on the ground, all persons as if their roots were 1 m high
-/// in the T-pose. All clips must have one layout: the error names the first that has not.
+/// Basis of the clips and their mirror images, on the ground, all persons as if their roots were 1
+/// m high in the T-pose. All clips must have one layout: the error names the first that has not.
 Result<TrainedBasis> TrainBasis(const std::vector<Clip>& clips);
 
 /// The basis' tensors and the height of its people.

@@ -232,7 +232,7 @@ struct Stamped {
   Value value;
 };
 
-/// What one rig's devices sent.
+/// Messages of one rig's devices.
 struct Rig {
   std::array<std::vector<Stamped<std::array<double, 4>>>, 2> boards;
   std::array<std::vector<Stamped<learning::HandReading>>, 2> hands;

@@ -18,9 +18,9 @@ namespace footing::train {
 struct OwnOptions {
   std::vector<std::string> recordings;  ///< footing-log's, one a motion.
   std::vector<std::string> motions;
-  std::vector<std::string> skeletons;  ///< Of AMC: none, one for all, or one a motion.
+  std::vector<std::string> skeletons;  ///< Skeletons of AMC: none, one for all, or one a motion.
   std::string rig;
-  double share = 0.7;  ///< Of all seconds; chosen on CMU 13_30 (docs/evaluation/models.md).
+  double share = 0.7;  ///< Share of all seconds; chosen on CMU 13_30 (docs/evaluation/models.md).
 };
 
 void AddOwnOptions(CLI::App& command, OwnOptions& options);
@@ -28,7 +28,7 @@ void AddOwnOptions(CLI::App& command, OwnOptions& options);
 /// One pair, aligned.
 struct OwnRecording {
   Clip clip;                  ///< The motion, for its poses.
-  double skeleton_rms_m = 0;  ///< Of its fit to the standard layout; 0: it has it.
+  double skeleton_rms_m = 0;  ///< Residual of its fit to the standard layout; 0: it has it.
   learning::OwnTake take;
   model::DataFile file;  ///< The recording.
 };
@@ -54,6 +54,7 @@ Result<TrainingSet> ReadTrainingSet(const MotionOptions& motions, const OwnOptio
 /// {"own": {...}} into the report of a command; nothing where there is none of it.
 void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report);
 
+/// A session read from a recording.
 struct Recording {
   learning::RecordedSession session;
   model::DataFile file;

@@ -51,7 +51,7 @@ reconstruction::Inputs InputsOf(PoseWay way, const reconstruction::Inputs& all) 
   return inputs;
 }
 
-/// What only the way of boards and hands reports.
+/// Adds the measures that only the way of boards and hands reports.
 void AddReport(const reconstruction::Output& output, const pose_run::Frame& frame,
                const eval::PoseScore& score, const eval::JudgedJoints& joints, PoseTally& tally) {
   ++tally.frames;

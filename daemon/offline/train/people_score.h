@@ -13,7 +13,7 @@
 /// How poses of people whom no model has seen are scored.
 namespace footing::train {
 
-/// What is compared: boards and hands, hands and feet with what is learned of these, and without;
+/// Compared ways: boards and hands, hands and feet with what is learned of these, and without;
 /// then boards and hands with parts of the truth in place of their estimates, to see which of these
 /// is to blame; then with more sensors, to see what these are worth.
 enum class PoseWay {
@@ -63,8 +63,8 @@ struct PoseTally {
   double frames = 0, invalid = 0, height_m2 = 0;
   double posture_m2 = 0, posture_frames = 0;
   Nees all, legs, arms;
-  std::array<std::optional<double>, kPoseWays> mpjpe_cm{};  ///< Of each way that was asked for.
-  std::array<eval::LegAngles, kPoseWays> angles_deg{};      ///< Of the same, summed.
+  std::array<std::optional<double>, kPoseWays> mpjpe_cm{};  ///< Error of each way asked for.
+  std::array<eval::LegAngles, kPoseWays> angles_deg{};      ///< Angle errors of the same, summed.
   /// From the true hips of a person to those of boards and hands, summed; rad, left and right.
   std::array<double, 6> hip_turn_rad{};
   double hip_square_rad2 = 0;

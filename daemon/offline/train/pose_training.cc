@@ -37,7 +37,7 @@
 namespace footing::train {
 namespace {
 
-constexpr double kPieceS = 10;  // Of one person's clips: a fold where there is nobody else.
+constexpr double kPieceS = 10;  // A piece of one person's clips: a fold where there is nobody else.
 constexpr int kPieceFolds = 5;
 constexpr int kDevices = 2;  // Sets of devices that each clip is felt with.
 
@@ -47,8 +47,8 @@ struct ArmOptions {
   std::string kind = "linear";
 };
 
-/// What devices in the hands would have measured in one motion, and how the arms were: `add(arm,
-/// since_s, input, truth)` for every frame and arm, as of a left one.
+/// Measurements of simulated devices in the hands during one motion, and how the arms were:
+/// `add(arm, since_s, input, truth)` for every frame and arm, as of a left one.
 template <typename Add>
 Result<void> ForEachFrame(const Clip& clip, std::uint64_t seed, const Add& add) {
   pose_run::Settings settings;
@@ -203,7 +203,7 @@ struct BasisOptions {
   ModelOptions model;
 };
 
-constexpr double kEnoughS = 90;  // Of range of motion: section 6.
+constexpr double kEnoughS = 90;  // Range of motion, s: section 6.
 
 int Run(const BasisOptions& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
@@ -396,7 +396,7 @@ void AddMlpCommand(CLI::App& app, Shared& shared) {
 
 namespace {
 
-constexpr double kEnoughPoseS = 90;  // Of range of motion: section 6.
+constexpr double kEnoughPoseS = 90;  // Range of motion, s: section 6.
 
 struct PoseOptions {
   MotionOptions motions;
@@ -425,7 +425,7 @@ Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& model
   return {};
 }
 
-/// Of all clips and their mirror images, and of the own recordings.
+/// Examples of all clips and their mirror images, and of the own recordings.
 Result<learning::PoseExamples> Examples(const TrainingSet& set, const model::Model& model,
                                         learning::PoseCues cues, std::uint64_t seed) {
   const auto models = reconstruction::MakeModels({{"the new model", model}});

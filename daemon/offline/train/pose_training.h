@@ -20,12 +20,12 @@
 
 namespace footing::train {
 
-/// What all subcommands share.
+/// State that all subcommands share.
 struct Shared {
   bool json = false;
   std::string command_line;  ///< For the model's provenance.
   int exit_code = 0;         ///< Set by the subcommand that ran.
-  ranks::Ranks ranks;        ///< Of which this process is one; `people` alone shares its work.
+  ranks::Ranks ranks;        ///< This process is one of them; `people` alone shares its work.
 };
 
 /// Each adds one subcommand to footing-train; its callback does the work and sets
@@ -38,7 +38,7 @@ void AddMlpCommand(CLI::App& app, Shared& shared);
 void AddPeopleCommand(CLI::App& app, Shared& shared);
 void AddPoseCommand(CLI::App& app, Shared& shared);
 
-/// What every subcommand that writes a model takes.
+/// Options of every subcommand that writes a model.
 struct ModelOptions {
   std::string out;
   bool force = false;
@@ -55,6 +55,7 @@ Result<void> CheckFree(const ModelOptions& options);
 model::Model NewModel(const std::string& kind, const Shared& shared, const ModelOptions& options,
                       std::vector<model::DataFile> data, std::vector<std::string> subjects);
 
+/// Writes the model file; refuses to replace one without `force`.
 Result<void> WriteModel(const model::Model& model, const ModelOptions& options);
 
 /// Writes the model, then the report of it to standard output; the program's exit code.
@@ -64,14 +65,14 @@ int Deliver(const model::Model& model, const ModelOptions& options,
 /// How poses are learned from clips: simulated sensors, the reconstruction's own estimators, and a
 /// regression on what these say.
 inline constexpr double kPosePieceS = 10;        ///< Frames of one piece are left out together.
-inline constexpr std::size_t kFewestPeople = 3;  ///< Whose errors show those of the next person.
+inline constexpr std::size_t kFewestPeople = 3;  ///< Fewer do not show a next person's errors.
 inline constexpr double kSettledS = 1.5;         ///< After the T-pose.
 
 /// A clip, or its mirror image, and how its random errors and pieces are numbered.
 struct PoseTake {
   const Clip* clip;
   bool mirrored = false;
-  int piece = 0;   ///< Of its first piece.
+  int piece = 0;   ///< Number of its first piece.
   int person = 0;  ///< Number of the clip's subject.
   /// All that a person did is left out together; else pieces are.
   bool by_person = false;
@@ -84,7 +85,7 @@ struct PoseTake {
 std::vector<PoseTake> TakesOf(const std::vector<const Clip*>& clips, std::uint64_t seed,
                               int& piece);
 
-/// What two boards and two hand trackers would have measured, and a tracker of the head and a belt
+/// Measurements of two boards and two hand trackers, and a tracker of the head and a belt
 /// where there are such.
 Result<pose_run::PoseRun> SimulateTake(const PoseTake& take,
                                        pose_run::HeadDevice head = pose_run::HeadDevice::kNone,
@@ -99,7 +100,7 @@ learning::FittedPoseRegression AppendPoses(const learning::PoseExamples& example
                                            learning::PoseCues cues, const Eigen::VectorXd& scale,
                                            std::uint64_t seed, model::Model& model);
 
-/// What the subcommands that train on a table share on the command line.
+/// Options of the subcommands that train on a table.
 struct DataOptions {
   std::string data;
   int inputs = 0;
@@ -113,6 +114,7 @@ struct DataOptions {
 
 void AddDataOptions(CLI::App& command, DataOptions& options);
 
+/// Rows of a table for training and validation.
 struct TrainingData {
   learning::Split split;
   model::DataFile file;
@@ -122,6 +124,7 @@ struct TrainingData {
 /// Refuses an existing model before anything is trained.
 Result<TrainingData> Load(const DataOptions& options);
 
+/// A CSV file's numbers with its columns' names.
 struct Table {
   std::vector<std::string> columns;
   Eigen::MatrixXd values;  ///< A row each.

@@ -18,14 +18,14 @@ namespace footing::tune {
 /// The paper names what it evaluates and gives no weights; these are ours. A trial that turns has
 /// no change of gait, so heading and latency never come together.
 struct Cost {
-  double failure = 0;  ///< Of a fall: 10 + 10 (1 - fraction survived), more than all else can be.
+  double failure = 0;  ///< A fall: 10 + 10 (1 - fraction survived), more than all else can be.
   double speed = 0;    ///< (speed error / 0.15 m/s)^2, at most 2.
   double flight = 0;   ///< Flight or swing: 0.25 (relative deviation / 10 %)^2, at most 1.
   double stance = 0;   ///< As flight.
   double stride = 0;   ///< As flight; left out below 0.3 m/s, where a stride has no length.
   double heading = 0;  ///< Turning: (heading error / 5 degrees)^2, at most 2.
   double legs = 0;  ///< Running: (what the gap lacks of 3 cm / 3 cm)^2, at most 2; 1: they touch.
-  double latency = 0;  ///< Of a change to walking: (what is more than wanted / 10 %)^2, at most 2.
+  double latency = 0;  ///< Change to walking: (what is more than wanted / 10 %)^2, at most 2.
 
   double total() const {
     return failure + speed + flight + stance + stride + heading + legs + latency;
@@ -43,20 +43,21 @@ struct Wanted {
 /// walking: 0.6 s and 0.1 s for each m/s, which their medians are from 3.5 to 6 m/s.
 Wanted WantedOf(const Task& task, double height_m);
 
+/// Cost of one trial of a task.
 Cost CostOf(const Task& task, const TrialResult& result);
 
 /// One iteration of a search, for the plot.
 struct HistoryPoint {
   int iteration = 0;
   double objective = 0;  ///< At the present point, on this iteration's trials.
-  double best = 0;       ///< Of all points tried on them.
+  double best = 0;       ///< Best of all points tried on them.
 };
 
 /// Everything a search remembers: a plain value, so that it can be kept and gone on with.
 struct SearchState {
   int iteration = 0;
   Eigen::VectorXd point;  ///< The answer so far; CMA-ES: the mean.
-  double step = 1;        ///< Of the line search; CMA-ES: sigma.
+  double step = 1;        ///< Step of the line search; CMA-ES: sigma.
   // CMA-ES alone:
   Eigen::MatrixXd covariance;
   Eigen::VectorXd covariance_path, step_path;
@@ -91,8 +92,8 @@ struct Dimension {
   bool relative;
 };
 
-/// What the paper tunes: the servos' spring and damper coefficients, the constants of equations
-/// (1) and (2), and the landing length.
+/// Parameters that the paper tunes: the servos' spring and damper coefficients, the constants of
+/// equations (1) and (2), and the landing length.
 std::vector<Dimension> DimensionsOf(stream::Gait gait);
 
 /// The gains at a point, 0 being `start`; kept within what a table may say.
@@ -156,6 +157,7 @@ class Team {
   std::vector<gait::GainSet> others_;
 };
 
+/// Sums up the costs of a set of trials.
 Score ScoreOf(const std::vector<Cost>& costs);
 
 /// Mean difference of the totals, trial by trial, and the half width of its 95 % interval.
@@ -165,7 +167,7 @@ struct Difference {
 };
 Difference Compare(const std::vector<Cost>& now, const std::vector<Cost>& before);
 
-/// What decides a run: a kept one is gone on with only when all of it is the same.
+/// Key of a run: a kept one is gone on with only when all of it is the same.
 struct RunKey {
   std::string gait;
   std::vector<double> speeds_mps;

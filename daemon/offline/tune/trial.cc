@@ -67,7 +67,7 @@ Range TestedMps(Gait gait) {
   return {0, 0};
 }
 
-/// Of pits that the gait is to cross; none: 0.
+/// Widths of pits that the gait is to cross, m; none: 0.
 Range PitWidths(const Task& task) {
   switch (task.gait) {
     case Gait::kWalk:

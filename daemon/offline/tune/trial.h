@@ -13,31 +13,32 @@
 /// footing-tune: the gains of a gait by search over simulated trials.
 namespace footing::tune {
 
-/// What a set is tuned for.
+/// Gait and speed that a set is tuned for.
 struct Task {
   stream::Gait gait = stream::Gait::kWalk;
   double speed_mps = 0;
 };
 
-/// What a trial meets. Everything is drawn, and mixed so that no trial of footing-eval draws the
-/// same.
+/// Disturbances of a trial. Everything is drawn, and mixed so that no trial of footing-eval draws
+/// the same.
 struct Disturbance {
   double kick_s = 0;  ///< From the trial's start.
   double kick_ns = 0;
   double kick_direction_rad = 0;
-  double turn_rad = 0;  ///< Of each step.
+  double turn_rad = 0;  ///< Turn of each step.
   double height_m = 0.2;
   double pit_m = 0;        ///< Width; 0: no pit.
   double pit_ahead_m = 0;  ///< From the start to the near edge.
   double change_s = 0;     ///< From the start to the command to walk; 0: none.
-  double walk_mps = 0;     ///< Of that command.
+  double walk_mps = 0;     ///< Speed of that command.
 };
 
-/// What the acceptance tests do (tests/scenarios/biped_table.py). Half of the trials are pushes of
-/// 0.1 s from any side after 1.5 to 2.2 s, of 26 N s (run) or 16 N s and up to 1.3 times that. The
-/// others, with a push of 2 N s, turn by 5 degrees a step, or come to a pit, where a run is to
-/// jump. Half of the jumps are as high as they are accepted, the others 0.1 m to that. A quarter of
-/// the runs are to walk, in place of some of each; a third of those that are pushed turn as well.
+/// Disturbances as in the acceptance tests (tests/scenarios/biped_table.py). Half of the trials are
+/// pushes of 0.1 s from any side after 1.5 to 2.2 s, of 26 N s (run) or 16 N s and up to 1.3 times
+/// that. The others, with a push of 2 N s, turn by 5 degrees a step, or come to a pit, where a run
+/// is to jump. Half of the jumps are as high as they are accepted, the others 0.1 m to that. A
+/// quarter of the runs are to walk, in place of some of each; a third of those that are pushed turn
+/// as well.
 Disturbance Draw(const Task& task, std::uint64_t seed);
 
 /// Whether the trial's turn is to be followed by the body: no large push disturbs it.
@@ -49,7 +50,7 @@ bool ScoresLegs(const Disturbance& disturbance);
 /// A straight track with the disturbance's pit, for a trial from `start`.
 std::string PitTrack(const engine::EngineState& start, const Disturbance& disturbance);
 
-/// What was seen in one trial. A duration or length that was never seen whole is 0.
+/// Measures of one trial. A duration or length that was never seen whole is 0.
 struct TrialResult {
   double survived = 1;           ///< Fraction of the trial before a fall.
   double speed_error_mps = 0;    ///< Root mean square, of the speed over the last half second.
@@ -68,8 +69,8 @@ inline constexpr double kTrialS = 5;
 /// reduce it.
 Result<void> CheckSpeeds(stream::Gait gait, const std::vector<double>& speeds_mps);
 
-/// What a set of gains is tried at: its own speed and, as gains stay the same beyond the outermost
-/// sets, for these the slowest or the fastest speed of the acceptance tests.
+/// Tasks that a set of gains is tried at: its own speed and, as gains stay the same beyond the
+/// outermost sets, for these the slowest or the fastest speed of the acceptance tests.
 std::vector<Task> TasksOf(stream::Gait gait, const std::vector<double>& speeds_mps,
                           std::size_t set);
 

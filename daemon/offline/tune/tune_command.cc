@@ -96,7 +96,7 @@ class Tuning {
     return std::filesystem::path(options_.out).replace_extension(".svg").string();
   }
 
-  /// Of the run that was stopped, on the first rank's disk; empty when there is none.
+  /// State of the run that was stopped, on the first rank's disk; empty when there is none.
   Result<std::string> KeptText() const {
     Result<std::string> text = std::string();
     if (team_.ranks().first() && std::filesystem::exists(StatePath())) {

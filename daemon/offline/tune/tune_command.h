@@ -12,6 +12,7 @@
 
 namespace footing::tune {
 
+/// Options of footing-tune's command line.
 struct Options {
   std::string gait;
   std::vector<double> speeds_mps;
@@ -42,7 +43,7 @@ Result<void> ReplaceFile(const std::string& path, const std::string& text);
 struct TunedSet {
   gait::GainSet set;  ///< The answer's gains when it is better, else the start's.
   Score before, after;
-  Difference difference;  ///< Of the answer's objective from the start's; below 0 is better.
+  Difference difference;  ///< The answer's objective less the start's; below 0 is better.
   bool better = false;    ///< No more falls, and lower with its whole 95 % interval.
 };
 
@@ -54,6 +55,7 @@ std::string TableText(const Options& options, const std::vector<gait::GainSet>& 
 /// The objective over the iterations, as SVG.
 std::string Plot(const Options& options, const std::vector<SearchState>& searches);
 
+/// The report of a run, as --json prints it.
 nlohmann::ordered_json ReportOf(const Options& options, const std::vector<Dimension>& dimensions,
                                 const std::vector<TunedSet>& tuned);
 

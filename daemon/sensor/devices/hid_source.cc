@@ -127,7 +127,7 @@ constexpr const char* kUdevRule =
     "KERNEL==\"hidraw*\", KERNELS==\"0005:057E:*|000[35]:054C:03D5.*|000[35]:054C:0C5E.*\", "
     "GROUP=\"footing\", MODE=\"0660\"";
 
-/// What to say of a node that stays shut; empty when there is nothing to say.
+/// Message for a node that stays shut; empty when there is nothing to say.
 std::string Trouble(const HidOpening& opening) {
   const std::string node = opening.identity.place + " (" + opening.identity.name + ")";
   switch (opening.outcome) {

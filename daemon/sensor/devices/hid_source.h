@@ -133,7 +133,7 @@ class HidSearch {
   exchange::BoundedQueue<Found> found_{64};
   exchange::BoundedQueue<Closed> closed_{64};
   exchange::Flag stop_;
-  std::int64_t changed_ns_ = 0;  ///< Of udev's newest report.
+  std::int64_t changed_ns_ = 0;  ///< Time of udev's newest report.
   int event_;                    ///< eventfd: stop, or a path was closed.
   std::set<std::string> open_paths_;
   std::map<std::string, Waiting> waiting_;  ///< Nodes that could not be opened, by path.

@@ -21,21 +21,21 @@ namespace footing::devices {
 
 inline constexpr std::uint32_t kMaxEnvelopeBytes = 2048;
 
-/// What one connection may send, and what may wait for it.
+/// Limits of one connection: of its messages, and of those that wait for it.
 transport::FramedLimits LimitsOfOne();
 
 /// How many connections the device socket has at once: settings of footingd. The server's own user
 /// and root have places of their own beyond `max_connections`.
 struct ConnectionLimits {
   std::int64_t max_connections = 64;
-  /// Of one user; all connections over TCP count as one user's.
+  /// Limit for one user; all connections over TCP count as one user's.
   std::int64_t max_connections_per_user = 16;
 };
 
 /// The connections that there are, those being refused not counted.
 struct ConnectionCounts {
   std::int64_t all = 0;
-  std::int64_t of_user = 0;  ///< Of the user that comes now.
+  std::int64_t of_user = 0;  ///< Connections of the user that comes now.
 
   void Add(const transport::Peer& there, const transport::Peer& comes);
 };
@@ -71,10 +71,11 @@ class SocketSource : public DeviceSource {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What footingd says on the device socket: serialised DeviceEnvelopes.
+/// Messages of footingd on the device socket: serialised DeviceEnvelopes.
 std::string OutputMessage(std::uint32_t slot, const reports::OutputReport& report);
 /// Asks for a feature report of `size` bytes, id included.
 std::string FeatureRequestMessage(std::uint32_t slot, std::uint8_t id, std::size_t size);
+/// Reports to the sender that its device is refused, and why.
 std::string RefusedMessage(std::uint32_t slot, const std::string& why);
 
 /// A connection to the device socket, and what it has attached.

@@ -31,6 +31,7 @@ using stream::kProductZcm2;
 using stream::kVendorNintendo;
 using stream::kVendorSony;
 
+/// Names and numbers by which a device is known.
 struct DeviceIdentity {
   Bus bus = Bus::kUnknown;
   std::uint32_t vendor = 0;
@@ -38,12 +39,13 @@ struct DeviceIdentity {
   std::string name;    ///< As the device gives it.
   std::string serial;  ///< Bluetooth address; it alone identifies a device.
   std::string place;   ///< "/dev/hidraw3" or "device socket, slot 2".
-  std::string driver;  ///< Of the kernel, "wiimote"; empty when unknown.
+  std::string driver;  ///< Driver in the kernel, "wiimote"; empty when unknown.
   bool simulated = false;
   std::string wished_rig;
   stream::DeviceRole wished_role = stream::DeviceRole::kUnspecified;
 };
 
+/// One report of a device, as received.
 struct IncomingReport {
   std::int64_t received_ns = 0;
   std::span<const std::uint8_t> bytes;  ///< Valid during the call.
@@ -59,7 +61,7 @@ struct SourceHandlers {
   std::function<std::string(DeviceHandle, const DeviceIdentity&)> on_attach;
   std::function<void(DeviceHandle, const IncomingReport&)> on_report;
   std::function<void(DeviceHandle, const std::string& reason)> on_detach;
-  /// What trackers and simulators send without a device, unchecked; null: dropped.
+  /// Frames of trackers and simulators without a device, unchecked; null: dropped.
   std::function<void(std::int64_t received_ns, const stream::HandFrame&)> on_hands = {};
   std::function<void(std::int64_t received_ns, const stream::ReferenceFrame&)> on_reference = {};
   std::function<void(std::int64_t received_ns, const stream::ContactFrame&)> on_contacts = {};
@@ -67,10 +69,12 @@ struct SourceHandlers {
   std::function<void(const std::string& line)> on_trouble;
 };
 
+/// A source of devices: hidraw nodes, or the device socket. Calls the handlers on the I/O thread.
 class DeviceSource {
  public:
   virtual ~DeviceSource() = default;
 
+  /// Looks for devices from now on; an error says what cannot be opened.
   virtual Result<void> Start() = 0;
   /// Writes one output report; the caller keeps to one per 10 ms and device. Unknown handles are
   /// ignored: the device may be gone already.
@@ -81,8 +85,8 @@ class DeviceSource {
   /// A device that was taken is not any more: it hears why, and what it sends is ignored. Only
   /// simulated devices are ever refused.
   virtual void Refuse(DeviceHandle device, const std::string& why) = 0;
-  /// What a thread of its devices has been stuck in for longer than the kernel may take; empty:
-  /// nothing.
+  /// Name of a thread that has been stuck in a call for longer than the kernel may take; empty:
+  /// none.
   virtual std::string Stuck() const { return ""; }
   /// Detaches everything without calling the handlers. May be called twice.
   virtual void Stop() = 0;
@@ -111,7 +115,7 @@ struct HidNode {
   std::string driver;  ///< The kernel's, e.g. "wiimote"; empty when unknown.
 };
 
-/// What udev knows of hidraw nodes: that something changed, and which there are. Without a running
+/// Watches udev for hidraw nodes: that something changed, and which there are. Without a running
 /// udev (a sandbox, a container) nothing is ever reported, and the nodes have to be looked at from
 /// time to time.
 class NodeMonitor {
@@ -138,7 +142,7 @@ struct HidClose {
 };
 using HidHandle = std::unique_ptr<hid_device, HidClose>;
 
-/// What became of opening a node.
+/// Outcome of opening a node.
 struct HidOpening {
   enum class Outcome {
     kOpen,
@@ -160,7 +164,7 @@ struct HidOpening {
 /// USB has the serial that it has over Bluetooth.
 HidOpening OpenHid(const HidNode& node);
 
-/// What is wrong with a simulated device's attachment, or nothing.
+/// Error in a simulated device's attachment, or nothing.
 std::string WhatIsWrong(const v1::DeviceAttach& attach);
 
 /// The identity that the attachment states.

@@ -125,6 +125,7 @@ struct CycleConfig {
   double furthest_turned_rad = 2.1;
 };
 
+/// Settings of all features.
 struct Config {
   MovingConfig moving;
   CadenceConfig cadence;

@@ -20,16 +20,16 @@ struct SwingLine {
 /// within 60 degrees of the swing, and is turned further while it swings, keeps its front's end.
 struct SwingEnd {
   bool known = false;
-  double angle_rad = 0;  ///< Of the last line, from S's front, left positive.
+  double angle_rad = 0;  ///< Angle of the last line, from S's front, left positive.
 };
 
 /// The line's end that goes on from `before`; while none is known, or where it would be turned
 /// further than hands are, the one nearer to the front.
 SwingLine Continued(const SwingLine& line, const SwingEnd& before, const CycleConfig& config);
-/// What is known after that line: a line that is not valid changes nothing.
+/// State after that line: a line that is not valid changes nothing.
 SwingEnd Next(const SwingEnd& before, const SwingLine& line, const CycleConfig& config);
 
-/// What the newest whole cycle of raw samples says (section 6, features 4 and 5).
+/// Measures of the newest whole cycle of raw samples (section 6, features 4 and 5).
 struct Cycle {
   bool valid = false;  ///< There is a whole cycle.
   /// Too much of it is clipped to fill it in: the amplitude is a lower bound, there is no mean.
@@ -52,6 +52,7 @@ SwingLine FindSwing(const Eigen::Matrix<double, Eigen::Dynamic, 3>& samples,
 /// to the others, never nearer to zero than the end of the range.
 Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& config);
 
+/// Inclination of a controller from the direction of gravity.
 struct Inclination {
   double roll_rad = 0;   ///< asin(ax / g): left side higher is positive.
   double pitch_rad = 0;  ///< asin(ay / g): front higher is positive.
@@ -106,6 +107,7 @@ struct Phase {
   double candidate_age_s = 0;  ///< and has been seen for this time.
 };
 
+/// The phase after a new estimate, `elapsed_s` after the one before.
 Phase Next(const Phase& before, const PhaseEstimate& estimate, double period_s, double elapsed_s,
            const PhaseConfig& config);
 

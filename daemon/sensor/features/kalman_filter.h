@@ -13,6 +13,7 @@
 /// The three axes have the same noise, so they share one P and one K.
 namespace footing::signal {
 
+/// Process and measurement noise of the filter.
 struct KalmanConfig {
   enum class Model { kConstantLevel, kConstantSlope };
   /// A constant level is what the paper's name for it suggests, but it trails a swing by a sample

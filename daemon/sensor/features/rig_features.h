@@ -28,6 +28,7 @@
 /// is refined between grid points and over several cycles.
 namespace footing::features {
 
+/// Period of a limb's swing by its autocorrelation.
 struct PeriodEstimate {
   bool found = false;
   double period_s = 0;
@@ -50,10 +51,10 @@ struct Cadence {
   double candidate_age_s = 0;  ///< For how long it was seen.
 };
 
-/// What the other hand or leg of the pair shows; nothing if there is none.
+/// Estimate of the other hand or leg of the pair; nothing if there is none.
 struct Partner {
   PeriodEstimate estimate;
-  double period_s = 0;  ///< Of its cadence; 0 none.
+  double period_s = 0;  ///< Period of its cadence; 0 none.
 };
 
 /// Whether the cadence lasts for several of the partner's: what repeats after one period repeats
@@ -117,7 +118,7 @@ class DeviceFeatureExtractor {
   std::uint32_t device() const { return features_.device; }
   stream::DeviceRole role() const { return features_.role; }
   const SampleGrid& grid() const { return grid_; }
-  /// Of the newest sample; 0 before the first.
+  /// Arrival of the newest sample; 0 before the first.
   std::int64_t newest_received_ns() const { return newest_received_ns_; }
 
  private:
@@ -135,7 +136,7 @@ class DeviceFeatureExtractor {
   std::optional<Eigen::Vector3d> gravity_mps2_;
   double elapsed_s_ = 0;  ///< Between the newest points of the last two Observe; 0 nothing new.
   std::int64_t newest_received_ns_ = 0;
-  std::uint32_t beginnings_ = 0;     ///< Of the grid, when last observed.
+  std::uint32_t beginnings_ = 0;     ///< Beginnings of the grid, when last observed.
   std::int64_t computed_index_ = 0;  ///< Grid index of the newest point already taken in.
 };
 

@@ -15,7 +15,7 @@ namespace footing::features {
 inline constexpr double kGridHz = 100;
 inline constexpr double kGridStepS = 1 / kGridHz;
 inline constexpr std::int64_t kGridStepNs = 10'000'000;
-/// What is kept: two periods of the lowest frequency and some.
+/// Samples kept: two periods of the lowest frequency and some.
 inline constexpr int kGridLength = 520;
 
 /// The newest samples of one controller on the uniform grid, oldest first. Columns x, y, z in S,
@@ -60,7 +60,7 @@ class SampleGrid {
 
   Config config_;
   bool started_ = false;
-  std::int64_t last_ns_ = 0;  ///< Of the last sample, repeats included.
+  std::int64_t last_ns_ = 0;  ///< Time of the last sample, repeats included.
   Knot knot_;                 ///< The last one that said something new.
   std::int64_t next_index_ = 0;
   Samples raw_ = Samples::Zero();

@@ -19,7 +19,7 @@ namespace footing::balance_board {
 /// value.
 class Decoder {
  public:
-  /// What one cell and the whole board are made for. More is passed on and said so.
+  /// Rated loads of one cell and of the whole board, kg. More is passed on and reported.
   static constexpr double kCellRangeKg = 34;
   static constexpr double kTotalRangeKg = 150;
   /// A corner that stays on one count while the others change this often is stuck.

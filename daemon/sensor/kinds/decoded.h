@@ -12,11 +12,12 @@
 #include "daemon/sensor/reports/input_report.h"
 #include "daemon/sensor/reports/sequencer.h"
 
-/// What every kind of device gives: samples of one report in SI units, made with the device's own
+/// Output of every kind of device: samples of one report in SI units, made with the device's own
 /// calibration. They know no time: who stamps the samples adds device, report count, times, filter
 /// and gyroscope bias.
 namespace footing::decode {
 
+/// Forces of one Balance Board report, N.
 struct BoardReading {
   board::CornerForces forces;  ///< As measured: neither tared nor clamped.
   bool uncalibrated = false;
@@ -47,6 +48,7 @@ stream::GamepadSample ToGamepad(const reports::ClassicCounts& counts);
 /// Other than repeated and the stamps.
 bool SameReading(const stream::GamepadSample& a, const stream::GamepadSample& b);
 
+/// Settings that the kinds of device share.
 struct KindOptions {
   double local_gravity_mps2 = kStandardGravityMps2;  ///< Where boards stand.
   handshake::HandshakeConfig handshake;
@@ -72,6 +74,7 @@ struct Timing {
   double sensor_period_s = 0.01;
 };
 
+/// A feature report to ask a device for.
 struct FeatureRequest {
   std::uint8_t id = 0;
   std::size_t size = 0;  ///< The id byte included.

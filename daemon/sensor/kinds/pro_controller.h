@@ -15,6 +15,7 @@ namespace footing::pro_controller {
 /// Order of the sticks' axes in the data bytes.
 enum Axis : std::size_t { kLeftX = 0, kRightX = 1, kLeftY = 2, kRightY = 3 };
 
+/// Raw values of a Pro Controller's report.
 struct Counts {
   std::array<std::uint16_t, 4> sticks{};  ///< 12 bits; rise to the right and to the front.
   std::uint16_t buttons = 0;              ///< Bits of reports::ClassicButton.

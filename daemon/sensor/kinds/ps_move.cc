@@ -70,7 +70,7 @@ bool CalibrationHandshake::TakeFeature(reports::Bytes feature) {
   settled_ = true;
   const auto read = calibration::ParseMove(model_, blob_.bytes());
   const bool good = read.origin == stream::CalibrationOrigin::kDevice;
-  // What is stored is better than a blob that makes no sense.
+  // A stored calibration is better than a blob that makes no sense.
   if (good || calibration_.origin == stream::CalibrationOrigin::kDefaults) calibration_ = read;
   return good;
 }

@@ -14,12 +14,12 @@
 
 namespace footing::wiimote {
 
-/// What the handshake found out about a Wiimote.
+/// Results of the handshake with a Wiimote.
 struct Setup {
   const calibration::AccelerationCalibration& acceleration;
   const calibration::NunchukCalibration& nunchuk;
   const calibration::MotionPlusCalibration& motion_plus;
-  /// What the extension bytes are; kUnspecified while nobody knows.
+  /// Meaning of the extension bytes; kUnspecified while it is not known.
   stream::Extension extension = stream::Extension::kUnspecified;
   std::uint64_t extension_epoch = 0;  ///< Changes when the extension starts again.
 };

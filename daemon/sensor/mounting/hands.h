@@ -18,7 +18,7 @@ inline constexpr std::size_t kMostCells = 16;
 inline constexpr double kFarthestCellM = 1;  ///< From the origin of what its source sits on.
 inline constexpr double kMostLoadN = 10'000;
 
-/// What is wrong with a frame and what it must be, in one line; empty when it can be taken: a
+/// Error of a frame with the accepted range, in one line; empty when it can be taken: a
 /// place within 10 m, a standard deviation in (0, 1] m along each axis (any with confidence 0),
 /// covariances that belong to them, a confidence in [0, 1], the role of a hand or a joint, each
 /// once, 1 to 16 points, an age in [0, 1] s, names of at most 64 printable characters.
@@ -36,9 +36,11 @@ std::string Problem(const stream::ContactFrame& frame);
 std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::int64_t received_ns,
                                           const std::string& default_rig);
 
+/// The published form of an insole's frame, with the rig filled in.
 stream::ContactSample ToSample(const stream::ContactFrame& frame, std::int64_t received_ns,
                                const std::string& default_rig);
 
+/// The published form of a reference frame, with the rig filled in.
 stream::ReferencePose ToPose(const stream::ReferenceFrame& frame, std::int64_t received_ns,
                              const std::string& default_rig);
 
@@ -65,17 +67,17 @@ class ExposureClock {
   };
 
   Exposure Take(const FrameTimes& times);
-  /// What was taken so far is published, and no longer changes.
+  /// Ends the present read: frames taken so far are published and no longer change.
   void Publish();
 
   std::int64_t received_ns() const { return received_ns_; }
 
  private:
   bool started_ = false;
-  std::int64_t received_ns_ = 0;   ///< Of the newest frame.
-  std::int64_t sampled_ns_ = 0;    ///< Of the newest frame.
-  std::int64_t oldest_ns_ = 0;     ///< Of the unpublished frames of the newest read.
-  std::int64_t published_ns_ = 0;  ///< Of the newest frame that no longer changes.
+  std::int64_t received_ns_ = 0;   ///< Arrival of the newest frame.
+  std::int64_t sampled_ns_ = 0;    ///< Exposure time of the newest frame.
+  std::int64_t oldest_ns_ = 0;     ///< Oldest of the newest read's unpublished frames.
+  std::int64_t published_ns_ = 0;  ///< Newest frame that no longer changes.
   int waiting_ = 0;                ///< Unpublished frames of the newest read.
   double period_ns_ = 0;           ///< Between frames; 0: not known.
 };
@@ -98,7 +100,7 @@ class Refusals {
  private:
   struct Kind {
     std::uint64_t unsaid = 0;
-    std::string why;  ///< Of the newest.
+    std::string why;  ///< Reason of the newest.
     std::optional<std::int64_t> said_ns;
   };
 

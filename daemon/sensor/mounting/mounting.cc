@@ -34,7 +34,7 @@ double Seconds(const stream::MotionSample& sample) {
   return NanosecondsToSeconds(sample.sampled_ns);
 }
 
-/// What makes a stretch unusable; empty if nothing does.
+/// Reason why a stretch is unusable; empty if it is usable.
 std::string Unusable(Samples samples, double least_s, const char* what,
                      const MountingConfig& config) {
   const double span_s = samples.size() < 2 ? 0 : Seconds(samples.back()) - Seconds(samples.front());

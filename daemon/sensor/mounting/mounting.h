@@ -29,6 +29,7 @@
 /// Right sign matters: turned half about, a limb's phase would be off by half a cycle.
 namespace footing::mounting {
 
+/// Limits that the stretches of a mounting procedure must keep.
 struct MountingConfig {
   double least_still_s = 1.8;
   double least_steps_s = 1.0;
@@ -37,7 +38,7 @@ struct MountingConfig {
   /// Standard deviation (root of three axes' variances) that standing still stays under. Counts of
   /// 8 bits that toggle on all axes reach 0.32.
   double still_sd_mps2 = 0.6;
-  double gravity_tolerance_mps2 = 1.5;  ///< Of the mean's length at rest.
+  double gravity_tolerance_mps2 = 1.5;  ///< For the length of the mean at rest.
   /// rms of the steps' horizontal swing that is enough to see its direction.
   double least_swing_mps2 = 0.5;
   /// The swing's variance along its direction against across it.
@@ -49,6 +50,7 @@ struct MountingConfig {
   double most_residual_rad = 0.2;  ///< 11.5 degrees.
 };
 
+/// Result of the mounting procedure: the rotation from S to M, or why it was refused.
 struct Mounting {
   bool ok = false;
   std::string problem;                                              ///< Why it was refused.
@@ -69,8 +71,9 @@ Mounting SolveMounting(stream::DeviceRole role, std::span<const stream::MotionSa
 stream::MotionSample Rotated(const Eigen::Quaterniond& rotation_MS,
                              const stream::MotionSample& sample);
 
+/// Thresholds at which a mounted sensor counts as slipped.
 struct SlipConfig {
-  double rest_sd_mps2 = 0.5;  ///< Of a second; below it the sensor is at rest.
+  double rest_sd_mps2 = 0.5;  ///< Over one second; below it the sensor is at rest.
   double rest_s = 3;          ///< Time at rest in the wrong direction.
   double leg_rad = 0.436;     ///< 25 degrees: no standing shin leans so far.
   double upper_rad = 0.873;   ///< Head, trunk; 50 degrees: more than looking down on a screen.
@@ -83,7 +86,7 @@ struct SlipConfig {
 /// Whether a mounted sensor has slipped on its limb, from samples in its frame M. A plain value;
 /// stays true until restarted with a new mounting.
 ///
-/// What can be sensed, and what a posture can fake:
+/// Detectable slips, and the postures that fake them:
 /// - Legs, head, trunk: gravity at rest that departs from down. A shin is near the vertical while
 ///   standing and sitting; kneeling, lying and legs laid up for 3 s are taken for a slip, and so is
 ///   a head or a trunk held down by 50 degrees.

@@ -9,6 +9,7 @@
 
 namespace footing::tare {
 
+/// Limits that the samples of an empty board must keep.
 struct TareConfig {
   /// An empty board stays within this; a person on it does not. Its own noise is 0.1 kg (recorded).
   double most_sd_n = 3;
@@ -19,11 +20,13 @@ struct TareConfig {
   double longest_gap_s = 0.25;
 };
 
+/// A board's forces at one time.
 struct TareSample {
   std::int64_t sampled_ns = 0;
   board::CornerForces forces;  ///< As measured, before any tare.
 };
 
+/// Result of a tare: the forces of the empty board, or why it was refused.
 struct Tare {
   bool ok = false;
   std::string problem;         ///< Why it was refused.
@@ -35,6 +38,7 @@ struct Tare {
 /// too heavy for an empty board, and when there are too few samples.
 Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareConfig& config = {});
 
+/// Thresholds at which a tared board counts as moved.
 struct DisplacementConfig {
   /// A board in the air hangs on its feet: its plate's some 3 kg leave the sensors; with one edge
   /// up it is about half of that. Under -1 kg for this long it is in somebody's hands.
@@ -50,7 +54,7 @@ struct DisplacementConfig {
 
 /// Whether a tared board was moved. A plain value; it stays true until it is restarted.
 ///
-/// What can be sensed is force across the plate alone. Lifting the board, or one edge of it, shows
+/// Only force across the plate can be sensed. Lifting the board, or one edge of it, shows
 /// while it is up; a board that was put down on another floor shows by its corners. Sliding or
 /// turning it on the same floor, empty or under a person, changes no vertical force and cannot be
 /// distinguished from standing; neither can anything while the board is off. The layout's check

@@ -11,7 +11,7 @@ namespace {
 
 /// Intervals nearer to a period than this say nothing on the phase.
 constexpr double kLongestPair = 0.9;
-/// What a repeat counts against a change: a device at rest repeats as well.
+/// Weight of a repeat against a change: a device at rest repeats as well.
 constexpr double kRepeatWeight = 0.5;
 /// A fit is believed when it explains this share of the changes ...
 constexpr double kExplained = 0.95;
@@ -258,7 +258,7 @@ void DeviceClock::AdvanceLoop(std::int64_t received_ns) {
   estimate_ns =
       std::clamp(estimate_ns, received_ns - RoundToNanoseconds(config_.max_lag_s), received_ns);
   loop_ns_ = std::max(estimate_ns, loop_ns_);
-  // What the estimate is moved by, all bounds included, is zero on average once the period is
+  // The estimate's corrections, all bounds included, are zero on average once the period is
   // right.
   const double moved_s = NanosecondsToSeconds(loop_ns_ - predicted_ns);
   period_s_ =

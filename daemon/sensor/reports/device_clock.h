@@ -6,9 +6,10 @@
 
 namespace footing::link {
 
+/// Settings of the fit of a sensor's own ticks.
 struct SampleTicksConfig {
-  double nominal_period_s = 0.01;  ///< Of the sensor, not of its reports.
-  double window_s = 8;             ///< What the fit looks back on.
+  double nominal_period_s = 0.01;  ///< Period of the sensor, not of its reports.
+  double window_s = 8;             ///< Time that the fit looks back on.
   double refit_s = 1;     ///< Between fits once the ticks are known over a whole window ...
   double search_s = 0.5;  ///< ... and until then.
   /// How far the sensor's period may be from its nominal value (1 = the same).
@@ -55,7 +56,7 @@ class SampleTicks {
   };
   struct Fit {
     double period_s = 0;
-    double phase = 0;         ///< Of the ticks after the newest arrival, in periods.
+    double phase = 0;         ///< Phase of the ticks after the newest arrival, in periods.
     double score = 0;         ///< Pairs that speak for it, less those against.
     double significance = 0;  ///< Standard deviations above the score of any phase.
     int changes = 0;
@@ -76,14 +77,15 @@ class SampleTicks {
   std::int64_t fitted_ns_ = 0;
   bool known_ = false;
   double period_s_;
-  double phase_range_ = 0;      // Of the last good fit, in periods.
+  double phase_range_ = 0;      // Width in the last good fit, in periods.
   std::int64_t tick_ns_ = 0;    // One of the ticks.
   std::int64_t proved_ns_ = 0;  // When the last good fit was.
 };
 
+/// Settings of the loop that estimates sample times.
 struct DeviceClockConfig {
-  double nominal_period_s = 0.01;  ///< Of reports.
-  double sensor_period_s = 0;      ///< Of new samples; 0: as the reports.
+  double nominal_period_s = 0.01;  ///< Period of reports.
+  double sensor_period_s = 0;      ///< Period of new samples; 0: as the reports.
   /// Share of the timing error that one report corrects, when it comes early and when late. A
   /// report cannot come before its sample, so early ones say more.
   double early_gain = 0.3;
@@ -107,7 +109,7 @@ class DeviceClock {
   /// One report; returns its sampled_ns. `changed`: the sensor took a new sample since the report
   /// before.
   std::int64_t Advance(std::int64_t received_ns, bool changed = true);
-  /// Of the sensor's samples, once its ticks are known; until then of the reports.
+  /// Period of the sensor's samples, once its ticks are known; until then of the reports.
   double period_s() const { return ticks_.known() ? ticks_.period_s() : period_s_; }
   /// Whether the ticks of the sensor are known.
   bool held() const { return ticks_.known(); }
@@ -127,7 +129,7 @@ class DeviceClock {
   std::int64_t loop_ns_ = 0;  ///< The loop's own estimate.
   std::int64_t sampled_ns_ = 0;
   int loop_steps_ = 0;           ///< Since the loop started, at most kSteadySteps.
-  double loop_variance_s2_ = 0;  ///< Of the loop's timing error, over about a second.
+  double loop_variance_s2_ = 0;  ///< Variance of the loop's timing error, over about a second.
 };
 
 /// How a device's data reports arrive: rate, jitter, gaps. Rate and jitter are exponential means
@@ -141,6 +143,7 @@ class LinkStatistics {
 
   /// 0 when nothing came for `now_ns` - one second.
   double RateHz(std::int64_t now_ns) const;
+  /// Standard deviation of the interval between reports, ms.
   double JitterMs() const;
   std::uint64_t reports() const { return reports_; }
   std::uint64_t gaps() const { return gaps_; }

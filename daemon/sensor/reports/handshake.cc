@@ -127,7 +127,7 @@ namespace {
 
 using reports::MemoryRead;
 
-constexpr double kNoAckTimeoutS = 0.05;  // Of a device that never acknowledged.
+constexpr double kNoAckTimeoutS = 0.05;  // For a device that never acknowledged.
 
 }  // namespace
 

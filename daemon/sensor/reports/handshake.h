@@ -18,7 +18,7 @@ struct Block {
   std::uint16_t size = 0;
 };
 
-/// What sets the handshake of one kind of device apart. A remote has an accelerometer, a camera and
+/// Properties of one kind of device in the handshake. A remote has an accelerometer, a camera and
 /// an extension port where accessories come and go; of any other kind, what answers at the port is
 /// the device itself.
 struct Plan {
@@ -58,10 +58,10 @@ enum class Step {
   kLive,
 };
 
-/// What the step reads from memory, if it does.
+/// The memory read of a step, if it has one.
 std::optional<reports::MemoryRead> ReadOf(Step step);
 
-/// What a step sends that is always the same; empty for reads, the mode, the activation and the
+/// The constant report that a step sends; empty for reads, the mode, the activation and the
 /// camera's format.
 reports::OutputReport FixedOutput(Step step);
 
@@ -71,10 +71,11 @@ bool EndsWithAcknowledgement(Step step);
 /// Id of the report that such a step's acknowledgement names.
 std::uint8_t AcknowledgedReport(Step step);
 
+/// Timeouts of the questions of a handshake.
 struct QuestionConfig {
   double reply_timeout_s = 0.5;  ///< A status or memory read not answered is asked again.
   double ack_timeout_s = 0.2;    ///< Some devices never acknowledge a write.
-  int tries = 3;                 ///< Of each question; then the next step is taken without it.
+  int tries = 3;  ///< Tries for each question; then the next step is taken without it.
 };
 
 /// The one question that is out: when it was asked, how often, and whether the answer is complete.
@@ -111,7 +112,7 @@ class Question {
   std::optional<reports::OutputReport> ReadRequest();
 
   Reading Take(const reports::MemoryData& memory);
-  /// Of the memory read.
+  /// Bytes of the memory read.
   const std::vector<std::uint8_t>& bytes() const { return read_->bytes(); }
   /// True when it answers the question.
   bool Take(const reports::Acknowledgement& acknowledgement);

@@ -79,8 +79,8 @@ struct Data {
   /// x, y, z in counts of 10 bits; y and z carry 9 real bits, their lowest is 0. Of a joined pair
   /// 8 real bits, their lowest two are 0.
   std::array<std::uint16_t, 3> acceleration_counts{};
-  std::uint8_t half_axis = 0;  ///< Of a half: its byte of x or y, 8 bits.
-  std::uint8_t half_z = 0;     ///< Of a half: its four bits of z, the first's are the upper ones.
+  std::uint8_t half_axis = 0;  ///< In a half: its byte of x or y, 8 bits.
+  std::uint8_t half_z = 0;     ///< In a half: its four bits of z, the first's are the upper ones.
   std::array<std::uint8_t, 21> extension_bytes{};
   std::uint8_t extension_size = 0;
   std::array<std::uint8_t, 36> camera_bytes{};
@@ -92,6 +92,7 @@ struct Data {
   Bytes camera() const { return Bytes(camera_bytes.data(), camera_size); }
 };
 
+/// A decoded input report.
 struct InputReport {
   bool has_buttons = false;
   std::uint16_t buttons = 0;  ///< Accelerometer bits masked.
@@ -113,7 +114,7 @@ class Interleaver {
   std::optional<Data> first_;
 };
 
-/// Of a Wiimote's status, 0 to 1: bars at 0x33, 0x44, 0x55, full at 0x7c (hid-wiimote).
+/// Charge in a Wiimote's status, 0 to 1: bars at 0x33, 0x44, 0x55, full at 0x7c (hid-wiimote).
 double BatteryFraction(std::uint8_t raw);
 
 /// The bright points that a Wiimote's infrared camera sees.
@@ -123,7 +124,7 @@ double BatteryFraction(std::uint8_t raw);
 /// outside the camera's 1024 x 768 is not seen either.
 std::vector<stream::CameraPoint> DecodeCamera(Bytes camera);
 
-/// What is plugged into the extension port, and the Balance Board's bytes.
+/// Device in the extension port, and the Balance Board's bytes.
 enum class Extension {
   kNotReady,  ///< All FF, or encrypted leftovers: ask again, do not conclude that there is none.
   kNunchuk,
@@ -144,6 +145,7 @@ Extension IdentifyExtension(Bytes id);
 enum Corner : std::size_t { kTopRight = 0, kBottomRight = 1, kTopLeft = 2, kBottomLeft = 3 };
 inline constexpr std::size_t kCorners = 4;
 
+/// Raw values of a Balance Board's cells.
 struct BoardCounts {
   std::array<std::uint16_t, kCorners> corners{};
   bool has_temperature = false;
@@ -161,6 +163,7 @@ double BoardBatteryFraction(std::uint8_t raw);
 /// Every extension's data is six bytes; a report may carry more, which are padding.
 inline constexpr std::size_t kExtensionDataBytes = 6;
 
+/// Raw values of a Nunchuk.
 struct NunchukCounts {
   std::uint8_t stick_x = 0;                     ///< Rises to the right.
   std::uint8_t stick_y = 0;                     ///< Rises to the front.
@@ -193,6 +196,7 @@ enum ClassicButton : std::uint16_t {
   kClassicZl = 0x0080,
 };
 
+/// Raw values of a Classic Controller.
 struct ClassicCounts {
   std::uint8_t left_x = 0;  ///< 6 bits; sticks rise to the right and to the front.
   std::uint8_t left_y = 0;
@@ -208,10 +212,10 @@ std::optional<ClassicCounts> DecodeClassic(Bytes extension);
 /// The form in which a MotionPlus passes it on: the lowest bits of the left stick are lost.
 std::optional<ClassicCounts> DecodePassedClassic(Bytes extension);
 
-/// What a packet of an active MotionPlus is.
+/// Kind of a packet of an active MotionPlus.
 enum class PassedPacket {
   kMotionPlus,
-  kExtension,  ///< Of the child: Nunchuk or Classic.
+  kExtension,  ///< From the child: Nunchuk or Classic.
   kRubbish,    ///< Short, all 00, or with the bit set that is always 0: right after activation.
 };
 
@@ -220,6 +224,7 @@ PassedPacket PacketOf(Bytes extension);
 /// Order of the axes in packets and calibration.
 enum MotionPlusAxis : std::size_t { kYaw = 0, kRoll = 1, kPitch = 2 };
 
+/// Raw values of a MotionPlus' gyroscope.
 struct MotionPlusCounts {
   std::array<std::uint16_t, 3> counts{};  ///< In the order of MotionPlusAxis, 14 bits.
   std::array<bool, 3> slow{};             ///< The axis uses its slow (fine) range in this packet.

@@ -54,6 +54,7 @@ constexpr std::size_t MoveBlobBytes(reports::MoveModel model) {
   return MoveBlobPieces(model) * (reports::kMoveCalibrationFeatureBytes - 2) + 2;
 }
 
+/// Zeros and gains of a PS Move's sensors.
 struct MoveCalibration {
   /// Per raw axis: value = (raw - zero) * gain.
   std::array<double, 3> acceleration_zero_counts{};
@@ -75,10 +76,11 @@ MoveCalibration DefaultMove(reports::MoveModel model);
 /// kStored: the caller says so.
 MoveCalibration ParseMove(reports::MoveModel model, reports::Bytes blob);
 
+/// One PS Move sample in SI units, frame S.
 struct MoveReading {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
-  std::uint32_t clipped_axes = 0;  ///< Of the accelerometer; bits 0, 1, 2: x, y, z.
+  std::uint32_t clipped_axes = 0;  ///< Accelerometer's axes; bits 0, 1, 2: x, y, z.
   bool angular_velocity_clipped = false;
   double trigger = 0;  ///< 0 to 1.
 };

@@ -12,6 +12,7 @@
 /// agree. Axes as psmoveapi names them: x to the right, y to the ball, z out of the buttons.
 namespace footing::reports {
 
+/// Models of the PS Move.
 enum class MoveModel {
   kZcm1,  ///< 054c:03d5, mini USB: two samples a report, magnetometer.
   kZcm2,  ///< 054c:0c5e, micro USB: one sample a report (sent twice), no magnetometer.
@@ -39,12 +40,14 @@ enum MoveButton : std::uint32_t {
   kMoveTrigger = 0x100000,
 };
 
+/// Raw values of one sample; axes as above.
 struct MoveSample {
   std::array<std::int16_t, 3> acceleration{};
   std::array<std::int16_t, 3> angular_velocity{};
   std::uint8_t trigger = 0;  ///< 0 to 255.
 };
 
+/// A decoded input report of a PS Move.
 struct MoveReport {
   std::uint32_t buttons = 0;  ///< Bits of MoveButton.
   std::uint8_t sequence = 0;  ///< 4 bits; rises by one a report.

@@ -10,7 +10,7 @@ constexpr std::uint8_t kLeds = 0x11;
 }  // namespace
 
 bool Outbox::Push(reports::OutputReport report) {
-  // Of what the LEDs show only the newest counts: it takes the place of one that waits.
+  // Only the newest report for the LEDs counts: it takes the place of one that waits.
   for (reports::OutputReport& one : waiting_) {
     if (report.empty() || one.empty() || report[0] != kLeds || one[0] != kLeds) continue;
     one = std::move(report);

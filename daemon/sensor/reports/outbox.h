@@ -8,7 +8,7 @@
 
 namespace footing::link {
 
-/// What waits to be written to one device: at most one report per 10 ms, since devices choke on
+/// Reports that wait to be written to one device: at most one per 10 ms, since devices choke on
 /// more, and the one place that puts the rumble bit into every report.
 class Outbox {
  public:

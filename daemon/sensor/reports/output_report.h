@@ -10,19 +10,23 @@ namespace footing::reports {
 /// Id byte and payload, as hid_write takes it.
 using OutputReport = std::vector<std::uint8_t>;
 
+/// Address spaces of a Wiimote.
 enum class Space {
   kEeprom,     ///< 0x0000 to 0x16ff.
   kRegisters,  ///< 0xa20000 speaker, 0xa40000 extension, 0xa60000 MotionPlus, 0xb00000 camera.
 };
 
+/// Changes nothing but the rumble bit, which the Outbox sets.
 OutputReport RumbleOnly();
 /// `leds`: bits 0 to 3.
 OutputReport SetLeds(std::uint8_t leds);
 /// `continuous`: reports come at the device's own rate, also when nothing changes.
 OutputReport SetMode(std::uint8_t data_report_id, bool continuous);
+/// Asks for a status report.
 OutputReport RequestStatus();
 /// `data`: 1 to 16 bytes.
 OutputReport WriteMemory(Space space, std::uint32_t address, Bytes data);
+/// Asks for `size` bytes; they come in memory reports of up to 16 bytes each.
 OutputReport ReadMemory(Space space, std::uint32_t address, std::uint16_t size);
 
 /// Every output report carries the rumble bit; the motor stops at one without it. Called at the
@@ -48,7 +52,7 @@ class MemoryRead {
   void Restart() { bytes_.clear(); }
 
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-  /// Of the reply that was refused: 7 or 8.
+  /// Error code of the reply that was refused: 7 or 8.
   std::uint8_t error() const { return error_; }
 
  private:

@@ -95,7 +95,7 @@ class ExtensionPort {
   /// The examination begins again.
   void StartOver();
 
-  /// What is sent now makes the port disappear for a while, when "no extension" means nothing.
+  /// The report sent now makes the port disappear for a while, when "no extension" means nothing.
   void Disturb(std::int64_t until_ns);
   bool disturbed(std::int64_t now_ns) const { return now_ns < disturbed_until_ns_; }
 
@@ -127,6 +127,7 @@ class ExtensionPort {
   std::int64_t disturbed_until_ns_ = 0;
 };
 
+/// Times after which the data mode is set again.
 struct KeepAliveConfig {
   /// A status report stops the data, or makes the kernel's driver set a mode of its own at once:
   /// the mode is set again so soon after it ...
@@ -252,6 +253,7 @@ class StatusWatch {
   std::int64_t asked_ns_ = 0;
 };
 
+/// Settings of the handshake with a Wiimote.
 struct HandshakeConfig {
   bool motion_plus = true;       ///< Look for one and use it.
   bool camera = false;           ///< Switch the infrared camera on.
@@ -304,24 +306,24 @@ class HandshakeSequencer {
   /// Id of the data reports asked for.
   std::uint8_t mode() const { return mode_; }
   bool camera() const { return camera_.wanted; }
-  /// What is plugged into a remote, an active MotionPlus included; kNone for other kinds.
+  /// Extension in a remote's port, an active MotionPlus included; kNone for other kinds.
   stream::Extension extension() const;
   const ExtensionPort& port() const { return port_; }
   const MotionPlus& motion_plus() const { return motion_plus_; }
   const calibration::AccelerationCalibration& acceleration() const { return acceleration_; }
   /// Origin of the acceleration's calibration.
   stream::CalibrationOrigin acceleration_origin() const;
-  /// Of a Nunchuk; kUnspecified when there is none.
+  /// Origin of a Nunchuk's calibration; kUnspecified when there is none.
   stream::CalibrationOrigin extension_origin() const;
-  /// Of a MotionPlus; kUnspecified when there is none.
+  /// Origin of a MotionPlus' calibration; kUnspecified when there is none.
   stream::CalibrationOrigin gyroscope_origin() const;
   /// The plan's blocks, as far as they were read; one that the device refused is empty.
   const std::vector<std::vector<std::uint8_t>>& blocks() const { return blocks_; }
   /// The newest status report.
   const std::optional<reports::Status>& status() const { return status_.newest; }
   std::uint64_t mode_reasserts() const { return keep_alive_.reasserts(); }
-  /// What is wrong with the link, or of a remote with its calibration and accessories, and what to
-  /// do; empty when all is well.
+  /// Text for a person: a problem with the link, or with a remote's calibration and accessories,
+  /// and what to do; empty when all is well.
   std::string Note(std::int64_t now_ns) const;
 
  private:

@@ -32,7 +32,7 @@ std::array<int, 3> TenBits(reports::Bytes block, std::size_t at) {
           block[at + 2] << 2 | (low & 3)};
 }
 
-/// What is wrong with a block, or nothing; fills `calibration` from it.
+/// Error in a block, or nothing; fills `calibration` from it.
 std::string ReadBlock(reports::Bytes block, AccelerationCalibration& calibration) {
   if (!EndsInSumChecksum(block)) return "checksum is wrong";
   const std::array<int, 3> zero = TenBits(block, 0);
@@ -263,7 +263,7 @@ bool Possible(const NunchukCalibration::Stick& stick) {
   return stick.middle - stick.low >= kMinStick && stick.high - stick.middle >= kMinStick;
 }
 
-/// What makes a block unusable, or nothing; fills `calibration` from it.
+/// Reason why a block is unusable, or nothing; fills `calibration` from it.
 std::string ReadBlock(reports::Bytes block, NunchukCalibration& calibration) {
   if (AllEqual(block, 0x00)) return "all 00";
   if (AllEqual(block, 0xff)) return "all FF";

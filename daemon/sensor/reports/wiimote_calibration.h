@@ -32,11 +32,12 @@
 /// y = backward - forward, z = up - down) and Unity's WiimoteApi say the same.
 namespace footing::calibration {
 
+/// Zeros and 1 g readings of a Wiimote's accelerometer.
 struct AccelerationCalibration {
-  std::array<int, 3> zero_counts{0x200, 0x200, 0x200};   ///< Of 10 bits, raw axes.
+  std::array<int, 3> zero_counts{0x200, 0x200, 0x200};   ///< Counts of 10 bits, raw axes.
   std::array<int, 3> one_g_counts{0x268, 0x268, 0x268};  ///< Above zero_counts by 60 to 160.
   stream::CalibrationOrigin origin = stream::CalibrationOrigin::kDefaults;
-  std::string problem;  ///< What is wrong with the device's own blocks; empty when nothing is.
+  std::string problem;  ///< Error in the device's own blocks; empty when there is none.
 };
 
 inline constexpr std::uint16_t kAccelerationBlockAddress = 0x0016;  ///< EEPROM; two blocks.
@@ -47,6 +48,7 @@ inline constexpr std::size_t kAccelerationBlockBytes = 10;
 /// nine bytes + 0x55) is right and its numbers are possible, so never a division by zero.
 AccelerationCalibration ParseAcceleration(reports::Bytes blocks);
 
+/// Specific force in SI units, frame S.
 struct Acceleration {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   std::uint32_t clipped_axes = 0;  ///< Bits 0, 1, 2: x, y, z at the end of the count range.
@@ -56,7 +58,7 @@ struct Acceleration {
 Acceleration Calibrate(const AccelerationCalibration& calibration,
                        const std::array<std::uint16_t, 3>& counts);
 
-/// Of the EEPROM's and the Nunchuk's blocks: the bytes' sum + 0x55, 8 bits.
+/// Checksum of the EEPROM's and the Nunchuk's blocks: the bytes' sum + 0x55, 8 bits.
 std::uint8_t SumChecksum(reports::Bytes bytes);
 
 /// Whether the block's last byte is the SumChecksum of those before it; true of the camera's block
@@ -69,7 +71,7 @@ std::uint32_t Crc32(std::initializer_list<reports::Bytes> pieces);
 /// All the same byte, as a device gives that has nothing stored.
 bool AllEqual(reports::Bytes bytes, std::uint8_t value);
 
-/// What a gyroscope reads at rest, estimated again whenever the device lies still.
+/// Bias of a gyroscope, its reading at rest, estimated again whenever the device lies still.
 ///
 /// Still: for a whole window the specific force is near 1 g and the angular velocity hardly varies
 /// and is within what a bias can be. The window's mean is the bias then; otherwise the last one
@@ -80,7 +82,7 @@ class GyroscopeBias {
   static constexpr double kWindowS = 1;
   static constexpr int kMinSamples = 20;
   static constexpr double kMaxGapS = 0.25;            ///< A longer one restarts the window.
-  static constexpr double kMaxForceErrorMps2 = 0.6;   ///< Of | |f| - g |, each sample.
+  static constexpr double kMaxForceErrorMps2 = 0.6;   ///< Limit of | |f| - g | in each sample.
   static constexpr double kMaxDeviationRadps = 0.02;  ///< Standard deviation of each axis.
   /// An uncalibrated MotionPlus is 300 counts off, 16 degrees/s in the slow range.
   static constexpr double kMaxBiasRadps = 0.6;
@@ -93,7 +95,7 @@ class GyroscopeBias {
   /// To be taken off; zero as long as the device has not been still.
   const Eigen::Vector3d& bias_radps() const { return bias_radps_; }
   bool known() const { return known_; }
-  /// Of the newest estimate.
+  /// Time of the newest estimate.
   std::optional<std::int64_t> estimated_ns() const {
     return known_ ? std::optional(estimated_ns_) : std::nullopt;
   }
@@ -110,7 +112,7 @@ class GyroscopeBias {
   std::int64_t first_ns_ = 0;
   std::int64_t newest_ns_ = 0;
   Eigen::Vector3d mean_radps_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d squares_radps2_ = Eigen::Vector3d::Zero();  // Of what differs from the mean.
+  Eigen::Vector3d squares_radps2_ = Eigen::Vector3d::Zero();  // Sum of squared deviations.
 };
 
 /// The MotionPlus' gyroscope, to SI in the Wiimote's sensor frame S (see acceleration.h).
@@ -131,7 +133,7 @@ class GyroscopeBias {
 /// units have scale < zero, so their raw counts fall where c rises.
 struct MotionPlusCalibration {
   struct Range {
-    std::array<int, 3> zero{};   ///< Of 16 bits, four times a packet's counts; yaw, roll, pitch.
+    std::array<int, 3> zero{};   ///< Counts of 16 bits, four times a packet's; yaw, roll, pitch.
     std::array<int, 3> scale{};  ///< At `degrees_per_s`.
     double degrees_per_s = 0;
   };
@@ -153,6 +155,7 @@ inline constexpr std::uint16_t kMotionPlusBlockBytes = 32;
 /// typical values and the problem by name.
 MotionPlusCalibration ParseMotionPlus(reports::Bytes block);
 
+/// Angular velocity in SI units, frame S.
 struct GyroscopeReading {
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
   bool clipped = false;  ///< An axis is at the end of its 14 bits.
@@ -178,7 +181,7 @@ GyroscopeReading Calibrate(const MotionPlusCalibration& calibration,
 /// right (left side up), y as it is tilted forwards (rear up), z with the right side up; Dolphin
 /// reads both with the same axes.
 struct NunchukCalibration {
-  std::array<int, 3> zero_counts{0x200, 0x200, 0x200};   ///< Of 10 bits, raw axes.
+  std::array<int, 3> zero_counts{0x200, 0x200, 0x200};   ///< Counts of 10 bits, raw axes.
   std::array<int, 3> one_g_counts{0x2cc, 0x2cc, 0x2cc};  ///< Above zero_counts by 100 to 400.
   struct Stick {
     int low = 32;
@@ -188,7 +191,7 @@ struct NunchukCalibration {
   Stick stick_x;
   Stick stick_y;
   stream::CalibrationOrigin origin = stream::CalibrationOrigin::kDefaults;
-  std::string problem;  ///< What is wrong with the device's own blocks; empty when nothing is.
+  std::string problem;  ///< Error in the device's own blocks; empty when there is none.
 };
 
 inline constexpr std::uint32_t kNunchukBlockAddress = 0xa40020;  ///< Registers; two blocks.
@@ -202,6 +205,7 @@ inline constexpr std::uint16_t kNunchukBlockBytes = 16;
 /// keeps its accelerometer, takes a typical stick and says so.
 NunchukCalibration ParseNunchuk(reports::Bytes blocks);
 
+/// Stick and specific force of a Nunchuk, in its frame S.
 struct NunchukReading {
   double stick_x = 0;  ///< -1 left to 1 right.
   double stick_y = 0;  ///< -1 back to 1 front.
@@ -209,6 +213,7 @@ struct NunchukReading {
   std::uint32_t clipped_axes = 0;  ///< Bits 0, 1, 2: x, y, z at the end of the count range.
 };
 
+/// Converts counts to SI units.
 NunchukReading Calibrate(const NunchukCalibration& calibration,
                          const reports::NunchukCounts& counts);
 

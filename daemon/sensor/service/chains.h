@@ -51,7 +51,7 @@ class BoardChain {
   void Restart();
   /// None: forces are published as measured. The watch for displacement restarts.
   void SetTare(const std::optional<board::CornerForces>& tare);
-  /// What has moved so far was on purpose.
+  /// Forgets displacement so far: it was on purpose.
   void RestartWatch() { displacement_ = tare::Displacement(); }
 
   /// Fills in forces, total, COP, contact, repeated and tared; device, stamps and flags are there
@@ -89,6 +89,7 @@ class MotionChain {
   Eigen::Vector3d filtered_mps2_ = Eigen::Vector3d::Zero();
 };
 
+/// Times of the mounting procedure's parts: standing still, then steps.
 struct MountingStretches {
   std::int64_t still_from_ns = 0;
   std::int64_t still_to_ns = 0;

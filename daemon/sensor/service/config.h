@@ -68,7 +68,7 @@ std::string OwnAddress(const std::string& name);
 /// Who may come over TCP and TLS; a configured state_directory has the certificate, too.
 transport::AccessSettings AccessOf(const Config& config);
 
-/// What the start checks besides the config itself, without its sockets and devices.
+/// Checks of the start besides the config itself, without its sockets and devices.
 Result<void> CheckStart(const Config& config);
 
 /// `with_access`: who may come in.
@@ -81,7 +81,7 @@ std::vector<transport::Channel> Channels();
 /// Each channel that has something to say, serialised once for all sessions.
 std::vector<transport::ChannelBytes> ToChannels(const TickContent& content);
 
-/// What the command line asks for.
+/// Request on the command line.
 struct CommandLine {
   Config config;
   bool json = false;  ///< One JSON object on standard output once it listens.

@@ -22,7 +22,7 @@
 
 namespace footing::sensor {
 
-/// What a device is: its role on a rig (what one person wears or stands on).
+/// Role of a device on a rig (the devices that one person wears or stands on).
 struct Binding {
   std::string rig;
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
@@ -87,10 +87,10 @@ class SampleTiming {
 
   /// A report with a new measurement or a repeated one (`changed` false).
   void Take(std::int64_t received_ns, bool changed);
-  /// Of the newest sample; never goes back.
+  /// Time of the newest sample; never goes back.
   std::int64_t sampled_ns() const { return sampled_ns_; }
-  /// Of the older of two samples in the newest report, half a report earlier; `before_ns` is the
-  /// newest sample of the report before.
+  /// Time of the older of two samples in the newest report, half a report earlier; `before_ns` is
+  /// the newest sample of the report before.
   std::int64_t HalfEarlierNs(std::int64_t before_ns) const;
 
   /// How well sample times are known (link::DeviceClock::sampled_sd_s), s; negative: not yet.
@@ -129,6 +129,7 @@ inline constexpr std::size_t kMaxReferencesPerTick = 64;
 /// And of contact samples, which are some 0.7 KiB.
 inline constexpr std::size_t kMaxContactsPerTick = 128;
 
+/// Settings of a device's decoding and its board.
 struct DeviceOptions {
   board::PlateConfig plate;
   decode::KindOptions kind;
@@ -170,6 +171,8 @@ class Device {
   /// The feature report to ask feature_handle() for now, if any.
   std::optional<decode::FeatureRequest> NextFeature(std::int64_t now_ns);
   devices::DeviceHandle feature_handle() const { return links_.feature_handle(); }
+
+  /// The published status; without samples for `stale_after_s` the device is stale.
   stream::DeviceStatus Status(std::int64_t now_ns, double stale_after_s) const;
 
   std::uint32_t number() const { return number_; }
@@ -194,9 +197,9 @@ class Device {
   /// The lamps show the role from now on; without one, the device's number.
   void set_binding(Binding binding);
 
-  /// Of a device on the body.
+  /// Chain of a device on the body.
   MountedSensor& mounted_sensor() { return mounted_sensor_; }
-  /// Of a board.
+  /// Chain of a board.
   BoardChain& chain() { return chain_; }
   const BoardChain& chain() const { return chain_; }
 

@@ -385,7 +385,7 @@ bool Hub::FreePlaceFor(bool simulated) {
   return true;
 }
 
-/// What its links send from now on is ignored; the caller gives its place to another.
+/// Later messages of its links are ignored; the caller gives its place to another.
 void Hub::DropSimulated(const Device& device, const std::string& why) {
   const std::string line =
       "simulated device " + device.identity().serial + " is no longer taken: " + why;
@@ -445,7 +445,7 @@ namespace {
 
 using stream::DeviceRole;
 
-constexpr std::size_t kMaxRigMembers = 8;  // Of RigFeatureExtractor.
+constexpr std::size_t kMaxRigMembers = 8;  // Limit of RigFeatureExtractor.
 
 }  // namespace
 
@@ -628,7 +628,7 @@ void Hub::ApplySetup(Device& device) {
   const bool remounted = stored && !stored->slipped && device.mounted_sensor().slipped();
   if (Same(rotation_MS, device.mounted_sensor().rotation_MS()) && !remounted) return;
   device.mounted_sensor().SetMounting(rotation_MS, binding.role);
-  // What was felt before lies in another frame.
+  // Earlier readings are in another frame.
   if (const auto rig = rigs_.find(binding.rig); rig != rigs_.end()) {
     rig->second.extractor =
         std::make_unique<features::RigFeatureExtractor>(binding.rig, rig->second.members);

@@ -43,7 +43,7 @@ class Hub {
     std::function<void(devices::DeviceHandle, const std::string& why)> refuse = {};
   };
 
-  /// What a command measured.
+  /// Measurement by a command.
   struct Measured {
     double residual = 0;
     std::string unit;
@@ -59,6 +59,7 @@ class Hub {
   /// As SourceHandlers. A simulated device with the serial of another one that is there is not
   /// taken; a real device takes the place of a simulated one, and its role back from one.
   std::string OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
+  /// Decodes a report; reports of handles that were not taken are ignored.
   void OnReport(devices::DeviceHandle handle, const devices::IncomingReport& report);
   void OnDetach(devices::DeviceHandle handle, const std::string& reason);
   /// Published with the next tick; what makes no sense is refused, counted and said now and then.
@@ -74,6 +75,7 @@ class Hub {
 
   /// Commands. The motor stops when the lease runs out or the session ends.
   Result<void> SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s);
+  /// Lamps, sphere and camera: an error when the device is not there or does not have it.
   Result<void> SetLeds(std::uint32_t device, std::uint8_t leds);
   Result<void> SetSphere(std::uint32_t device, std::uint32_t rgb);
   Result<void> SetCamera(std::uint32_t device, bool on);
@@ -87,15 +89,19 @@ class Hub {
   ///
   /// The mean of the board's newest `window_s` (0: 2 s) becomes its zero; or it is forgotten.
   Result<Measured> Tare(const std::string& serial, double window_s, bool clear);
+  /// Rotation from S to M of a device on the body, residual in degrees; an error when unusable.
   Result<Measured> SolveMounting(const std::string& serial, const MountingStretches& stretches);
   Result<Measured> ClearMounting(const std::string& serial);
+  /// Places of a rig's boards on the floor; an error names what does not fit.
   Result<Measured> SetBoardLayout(stream::BoardLayout layout);
+  /// Notes that a step of the set-up was done, or forgets it.
   Result<void> RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget);
   /// Published with the rig's set-up until the session ends; nothing: no more is asked for.
   Result<void> ShowPrompt(std::uint64_t session, const std::string& rig,
                           const std::optional<stream::SetupPrompt>& prompt);
   /// A mounting of a recording, found for this role.
   void TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting);
+  /// Releases the session's motors and prompts.
   void EndSession(std::uint64_t session);
   /// The config from now on: of Reloaded(), which changes only what a running footingd can take.
   void Reload(const Config& config) { config_ = config; }
@@ -149,7 +155,7 @@ class Hub {
                bool to_device, std::int64_t true_ns, bool feature = false);
   void Flush(Device& device);
   void Refuse(const std::string& what, const std::string& why);
-  /// What is timed by itself: kind of frame, rig, name of the sender, and which part of a body.
+  /// Key of one exposure clock: kind of frame, rig, name of the sender, and which part of a body.
   using Exposed = std::tuple<char, std::string, std::string, int>;
   hands::ExposureClock::Exposure Expose(const Exposed& what, const hands::FrameTimes& times);
   void PublishExposures();

@@ -229,7 +229,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     server_.Publish(now_ns, channels);
   }
 
-  /// What is to be kept is answered when it is on the disk; ticks do not wait for that.
+  /// A command with something to keep is answered when it is on the disk; ticks do not wait for
+  /// that.
   std::optional<v1::CommandResult> OnCommand(const transport::SessionInfo& session,
                                              const v1::Command& command) {
     const std::uint64_t before = disk_.last_save();

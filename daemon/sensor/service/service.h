@@ -31,7 +31,7 @@ class Service {
 
   /// Takes of another config what needs no restart, and logs what changed and what does.
   void Reload(const Config& wanted);
-  /// What a thread of a device is stuck in; empty: nothing.
+  /// Name of the thread that is stuck in a call to the kernel; empty: none.
   std::string Stuck() const;
 
   /// Where it listens for clients.

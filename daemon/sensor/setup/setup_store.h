@@ -26,7 +26,7 @@ struct Storage {
   std::function<void(const std::string& name, const std::string& why)> refuse;
 };
 
-/// What `read` makes of the text saved under this name. None if there is none; text that it cannot
+/// Reads the text saved under this name with `read`. None if there is none; text that it cannot
 /// read is refused and none as well.
 template <typename Content>
 std::optional<Content> Load(const Storage& storage, const std::string& name,
@@ -40,6 +40,7 @@ std::optional<Content> Load(const Storage& storage, const std::string& name,
   return std::nullopt;
 }
 
+/// A mounting as stored (mounting::Mounting).
 struct StoredMounting {
   std::string role;  ///< "rig/role" that it was found for; stale on another.
   Eigen::Quaterniond rotation_MS = Eigen::Quaterniond::Identity();
@@ -47,12 +48,13 @@ struct StoredMounting {
   bool slipped = false;  ///< Since it was found.
 };
 
+/// A tare as stored (tare::Tare).
 struct StoredTare {
   board::CornerForces offset;
   double residual_n = 0;
 };
 
-/// What a device reports of its own calibration.
+/// Calibration that a device reports of itself.
 struct StoredCalibration {
   std::string serial;
   std::vector<std::uint8_t> bytes;
@@ -78,18 +80,22 @@ class SetupStore {
   /// An empty role forgets it.
   void SetRole(const std::string& serial, const std::string& role);
 
+  /// Tare of the board; none if none is stored.
   std::optional<StoredTare> TareOf(const std::string& serial) const;
+  /// Stores the tare; none forgets it.
   void SetTare(const std::string& serial, const std::optional<StoredTare>& tare);
 
   /// Only when it was found for this "rig/role".
   std::optional<StoredMounting> MountingOf(const std::string& serial,
                                            const std::string& role) const;
+  /// Stores the mounting; none forgets it.
   void SetMounting(const std::string& serial, const std::optional<StoredMounting>& mounting);
 
   /// False when there are too many rigs already.
   bool SetLayout(const stream::BoardLayout& layout);
   /// Replaces the item of that name and serial. False when there are too many already.
   bool Record(const std::string& rig, const stream::SetupItem& item);
+  /// Removes the item of that name and serial.
   void Forget(const std::string& rig, const std::string& name, const std::string& serial);
   /// Marks items of that name (of all serials if `serial` is empty) as to be redone.
   void MarkStale(const std::string& rig, const std::string& name, const std::string& serial,
@@ -102,6 +108,7 @@ class SetupStore {
   bool Moved(const std::string& serial) const { return moved_.contains(serial); }
   void SetMoved(const std::string& serial, bool moved);
 
+  /// The set-up of all rigs, to be published.
   std::vector<stream::RigSetup> Rigs() const;
   /// Grows with every change: what was published before is old.
   std::uint64_t revision() const { return revision_; }
@@ -129,6 +136,7 @@ class CalibrationStore {
 
   /// None if none was saved for this device, or what was saved is refused.
   std::optional<std::vector<std::uint8_t>> Load(const std::string& serial) const;
+  /// Saves the calibration in place of an earlier one.
   void Save(const std::string& serial, const std::vector<std::uint8_t>& bytes) const;
 
  private:

@@ -32,7 +32,7 @@ class DiskWriter {
 
   void Save(const std::string& name, const std::string& content);
 
-  /// What was saved under this name and is not written yet.
+  /// Content saved under this name and not written yet.
   std::optional<std::string> Waiting(const std::string& name) const;
 
   /// The number of the last Save(), from 1; 0 before.
@@ -71,7 +71,7 @@ class DiskWriter {
   std::thread thread_;
 };
 
-/// What footingd remembers between its runs: one small JSON file per concern ("roles", "tares",
+/// State that footingd keeps between its runs: one small JSON file per concern ("roles", "tares",
 /// ...) with its version, its own name or serial, and a CRC-32 of its content. A file that is
 /// truncated, damaged, of another version, or of another name is named in one line and moved aside
 /// to *.damaged; a directory that cannot be written is said once, and footingd goes on in memory.

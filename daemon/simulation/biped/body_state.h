@@ -32,7 +32,7 @@ struct LegState {
 /// Below this a foot counts as off the ground, N: a hundredth of the weight.
 inline constexpr double kTouchForceN = 1.0;
 
-/// What the controllers see. Frames: world W (x forward, y left, z up), body B, whole COM C.
+/// State that the controllers see. Frames: world W (x forward, y left, z up), body B, whole COM C.
 struct BodyState {
   double time_s = 0;
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();
@@ -48,7 +48,7 @@ struct BodyState {
 BodyState Read(const BipedParameters& parameters, const physics::Observation& observation,
                double time_s);
 
-/// What a person, or a program in a person's place, wants of the character.
+/// Command of a person, or of a program in a person's place, to the character.
 struct GaitCommand {
   stream::Gait gait = stream::Gait::kStep;
   double speed_mps = 0;          ///< Along the heading; ignored while stepping in place.

@@ -67,8 +67,8 @@ std::string Geom(const GroundBox& box, const std::string& name) {
          text(p.z()) + "' quat='" + text(q.w()) + text(q.x()) + text(q.y()) + text(q.z()) + "'/>\n";
 }
 
-constexpr int kBoxesBehind = 8;  ///< Of an extendable track.
-constexpr double kReachM = 2.5;  ///< Of the character, with its next steps.
+constexpr int kBoxesBehind = 8;  ///< Boxes of an extendable track behind the character.
+constexpr double kReachM = 2.5;  ///< Reach of the character, with its next steps.
 
 /// Segments within reach of segment `from`'s end, stepping by `by`.
 int WithinReach(const stream::Track& track, int from, int by) {

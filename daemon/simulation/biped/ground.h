@@ -60,11 +60,13 @@ GroundWindow WindowOf(const stream::Track& track);
 
 /// Far below everything: where a box waits that no segment needs.
 GroundBox WaitingBox(int index);
+/// Name of the geom of a box, for MuJoCo.
 std::string GroundBoxName(int index);
 
+/// The ground in MJCF.
 struct GroundText {
   std::string mjcf;
-  std::vector<std::string> names;  ///< Of its geoms, in their order.
+  std::vector<std::string> names;  ///< Names of its geoms, in their order.
 };
 /// The ground as MJCF geoms of the world body: the waiting ones of WindowOf, else one plane
 /// (HasPlane), or a box for each segment that is not a pit; the first one begins 3 m before its
@@ -82,9 +84,9 @@ struct Edge {
 struct Spot {
   double height_m = 0;
   double slope = 0;        ///< Rise over run along the track.
-  double heading_rad = 0;  ///< Of the track here.
+  double heading_rad = 0;  ///< Heading of the track here.
   bool pit = false;        ///< The height is its floor's.
-  Edge behind, ahead;      ///< Of this segment; infinitely far where the ground goes on.
+  Edge behind, ahead;      ///< Edges of this segment; infinitely far where the ground goes on.
 };
 
 /// Smaller changes of height do not count as edges.

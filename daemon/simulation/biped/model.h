@@ -19,7 +19,7 @@ struct BipedParameters {
   double body_inertia_roll_kgm2 = 0;
   double body_inertia_pitch_kgm2 = 0;
   double body_inertia_yaw_kgm2 = 0;
-  double link_mass_kg = 0;              ///< Of each hip link and each knee link.
+  double link_mass_kg = 0;              ///< Mass of each hip link and each knee link.
   double link_inertia_across_kgm2 = 0;  ///< About its own COM.
   double link_inertia_along_kgm2 = 0;
   double leg_length_m = 0;  ///< Hip to foot at joint position zero.

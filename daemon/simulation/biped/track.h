@@ -70,6 +70,7 @@ using NewSegment = track::Piece;
 inline constexpr std::size_t kMostSegments = 256;
 /// The same of an endless track, whose past nobody comes back to.
 inline constexpr std::size_t kMostEndlessSegments = 64;
+/// Segments that this track keeps at most.
 std::size_t MostSegments(const stream::Track& track);
 /// The oldest segment only goes when the character is at least so many segments further.
 inline constexpr int kKeptBehind = 12;

@@ -216,7 +216,7 @@ void ReadLines(Fields& fields, stream::Track& track) {
   }
 }
 
-/// What a track that grows must keep to.
+/// Checks the limits of a track that grows.
 Result<void> CheckGrowing(const stream::Track& track, const std::string& origin) {
   constexpr std::size_t kMost = 32;
   constexpr double kShortestM = 2;

@@ -20,6 +20,7 @@ inline constexpr double kStoppedMps = 0.3;
 /// moment too early has still made the transition.
 inline constexpr double kEarlyS = 1.0;
 
+/// State of a trial. A plain value.
 struct TrialMemory {
   stream::TrialPhase phase = stream::TrialPhase::kReady;
   double started_s = 0;  ///< When the start line was crossed.
@@ -38,7 +39,7 @@ TrialMemory Begin(const stream::Track& track, int task);
 /// The task that a seed draws among a track's; -1 where it has none.
 int DrawTask(const stream::Track& track, std::uint64_t seed);
 
-/// What a trial sees of the character that stands on its feet.
+/// Observations of the character in a trial, while it stands on its feet.
 struct TrialCues {
   double time_s = 0;
   double distance_m = 0;  ///< Along the track.
@@ -46,7 +47,7 @@ struct TrialCues {
   double speed_mps = 0;
 };
 
-/// What has just happened.
+/// Changes of a trial at this moment.
 struct TrialNews {
   bool started = false;
   bool finished = false;
@@ -63,8 +64,8 @@ void Stop(double time_s, TrialMemory& memory);
 /// True until the trial is finished or stopped.
 bool GoesOn(const TrialMemory& memory);
 
-/// What a failure counts as in this trial: on a straight track, which has a mark, leaving the
-/// ribbon is `straightness`, and every failure from the mark until the task is done is
+/// Cause under which a failure is counted in this trial: on a straight track, which has a mark,
+/// leaving the ribbon is `straightness`, and every failure from the mark until the task is done is
 /// `transition`.
 stream::FailureCause Attribute(const stream::Track& track, const TrialMemory& memory,
                                stream::FailureCause cause);

@@ -207,7 +207,7 @@ void Clearance::MoveGround(const mjModel& model, int geom) {
   ground.centre_W_m = Eigen::Map<const Eigen::Vector3d>(model.geom_pos + 3 * geom);
   mjtNum R_WG[9];
   mju_quat2Mat(R_WG, model.geom_quat + 4 * geom);
-  ground.R_GW = Eigen::Map<const Eigen::Matrix3d>(R_WG);  // Of row order: the transpose.
+  ground.R_GW = Eigen::Map<const Eigen::Matrix3d>(R_WG);  // Row order: the transpose.
   const bool box = model.geom_type[geom] == mjGEOM_BOX;
   ground.half_size_m =
       box ? Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(model.geom_size + 3 * geom))

@@ -30,7 +30,7 @@ struct WorldNames {
   std::vector<std::string> ground;        ///< Boxes of the world body that may be moved.
 };
 
-/// What is seen of the state. Positions and velocities are of the present state; contact forces
+/// Observation of the state. Positions and velocities are of the present state; contact forces
 /// are those that acted in the last step.
 struct Observation {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< Root's origin, m.
@@ -71,6 +71,7 @@ class World {
   World& operator=(World&&) noexcept;
   ~World();
 
+  /// Step of the physics.
   double step_s() const;
   double mass_kg() const;
 
@@ -84,6 +85,7 @@ class World {
   /// One step under joint efforts and a push on the root's COM. No other force is applied to the
   /// root: aborts should one be.
   void Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n);
+  /// Reads the present state, in W.
   const Observation& Observe() const;
   /// Origin and orientation of link `index` of WorldNames::links, in the world.
   void LinkPose(int index, Eigen::Vector3d& position_m, Eigen::Quaterniond& orientation) const;
@@ -92,6 +94,7 @@ class World {
   double root_force_max_n() const;
   /// FNV-1a over the words of position, velocity, activation and warm start.
   std::uint64_t StateHash() const;
+  /// Everything that changes with time, as a value, and back to it.
   WorldState Save() const;
   void Restore(const WorldState& state);
 
@@ -156,7 +159,7 @@ Result<int> IdOf(const mjModel& model, mjtObj type, const std::string& name);
 inline constexpr int kRootDofs = 6;
 inline constexpr int kDofs = kRootDofs + kJoints;
 
-/// What a World owns.
+/// MuJoCo's model and state, and where the links are in them.
 struct World::Parts {
   ModelPointer model;
   StatePointer state;

@@ -134,7 +134,7 @@ constexpr double kLowFootM = 0.1;
 /// Only with a foot this far under the ribbon is what it is over looked up without a fall, m.
 constexpr double kSunkM = 0.05;
 
-/// What of the ground a foot has missed.
+/// Ground that a foot has missed.
 struct MissedGround {
   bool pit = false, pit_deep = false, edge = false;
 };

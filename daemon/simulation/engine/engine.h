@@ -25,6 +25,7 @@ struct GainText {
   std::string origin;  ///< Names the file in errors.
   std::string text;
 };
+/// Data files of the engine, as text.
 struct EngineTexts {
   std::string biped;    ///< kBipedFile
   std::string track;    ///< "tracks/NAME.json"
@@ -39,8 +40,9 @@ inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gait
                                        "gaits/jump.csv"};
 static_assert(kGainFiles.size() == stream::kGaits.size(), "a table of gains for every gait");
 
+/// Settings of the engine.
 struct EngineConfig {
-  double step_s = 0.001;            ///< Of physics and control, (0, 0.002].
+  double step_s = 0.001;            ///< Step of physics and control, (0, 0.002].
   double fall_shown_s = 0.7;        ///< From a fall to the put-back.
   double put_back_distance_m = 3;   ///< Along the track's centre line, backwards.
   double features_timeout_s = 0.5;  ///< Without new features: stepping in place.
@@ -53,7 +55,7 @@ inline constexpr int kMaxAppends = 16;
 struct InterfaceInputs {
   std::uint64_t number = 0;  ///< 0: the one of EngineConfig.
   mapping::InterfaceOptions options = {};
-  std::optional<mapping::AnyInterface> made = {};  ///< Of the options; not read with number 0.
+  std::optional<mapping::AnyInterface> made = {};  ///< Made of the options; not read with number 0.
 };
 
 /// Which trial runs. A trial begins when its number is new, on the track that the engine then has.
@@ -61,15 +63,15 @@ struct TrialInputs {
   std::uint64_t number = 0;
   int task = -1;                    ///< Index among the track's tasks; -1: none.
   std::uint64_t stopped_below = 0;  ///< Trials with smaller numbers are stopped.
-  std::uint64_t track_number = 0;   ///< Of the track that it runs on (UseTrack); 0: the first one.
+  std::uint64_t track_number = 0;   ///< Track that it runs on (UseTrack); 0: the first one.
 };
 
-/// What the world outside wants, as of one step. Fixed size. Numbers count up: a push, a put-back
+/// Inputs of the engine as of one step. Fixed size. Numbers count up: a push, a put-back
 /// or features are new when their number differs from the last step's, so the same inputs may be
 /// given again and again, and nothing is carried out twice.
 struct EngineInputs {
   std::uint64_t features_number = 0;  ///< 0: none received so far.
-  mapping::Inputs features;           ///< Of the controllers and boards.
+  mapping::Inputs features;           ///< Features of the controllers and boards.
   InterfaceInputs interface;
   bool direct = false;  ///< Follow direct_command in place of the features.
   biped::GaitCommand direct_command;
@@ -84,6 +86,7 @@ struct EngineInputs {
   TrialInputs trial;
 };
 
+/// Kinds of events.
 enum class EventKind {
   kFall,  ///< A failure of any cause.
   kPutBack,
@@ -101,18 +104,19 @@ enum class EventKind {
   kTaskDone,  ///< The change of gait that the track asks for has succeeded.
 };
 
+/// An event of one step. Fixed size.
 struct EngineEvent {
   EventKind kind = EventKind::kFall;
   stream::Gait from = stream::Gait::kUnspecified;
   stream::Gait to = stream::Gait::kUnspecified;
-  const char* text = "";  ///< Of static storage; why it fell or was put back.
-  stream::FailureCause cause = stream::FailureCause::kUnspecified;  ///< Of a failure.
-  std::uint64_t failure_number = 0;                  ///< Of a failure: all are counted from 1.
-  bool in_trial = false;                             ///< Of a failure: the trial was going on.
-  bool by_operator = false;                          ///< Of a put-back: an input asked for it.
-  std::uint64_t trial_number = 0;                    ///< Of the trial at this step.
-  stream::TrialProgress trial = {};                  ///< Of a failure or a trial: how that stands.
-  Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();  ///< Of a failure: where.
+  const char* text = "";  ///< Why it fell or was put back; static storage.
+  stream::FailureCause cause = stream::FailureCause::kUnspecified;  ///< For a failure.
+  std::uint64_t failure_number = 0;                  ///< For a failure: all are counted from 1.
+  bool in_trial = false;                             ///< For a failure: the trial was going on.
+  bool by_operator = false;                          ///< For a put-back: an input asked for it.
+  std::uint64_t trial_number = 0;                    ///< Trial at this step.
+  stream::TrialProgress trial = {};                  ///< For a failure or a trial: its progress.
+  Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();  ///< For a failure: its place.
 };
 
 inline constexpr int kLinkCount = 5;  ///< body, left hip, left knee, right hip, right knee.
@@ -133,6 +137,7 @@ struct AppendProgress {
   bool added = false;        ///< In this step: the track's last segment is new.
 };
 
+/// State of the character after a step, in W. Fixed size.
 struct EngineOutput {
   std::uint64_t step = 0;
   double time_s = 0;  ///< step * step_s.
@@ -145,7 +150,7 @@ struct EngineOutput {
   std::array<double, 8> joint_efforts{};
   Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
   stream::GaitState gait;
-  stream::InterfaceState interface;  ///< What the interface believes that the person does.
+  stream::InterfaceState interface;  ///< The person's movement as the interface takes it.
   stream::TrialProgress trial;
   std::uint64_t trial_number = 0;  ///< The inputs' that this trial began with.
   std::uint64_t track_number = 0;
@@ -154,7 +159,7 @@ struct EngineOutput {
   std::uint64_t state_hash = 0;  ///< FNV-1a of the physics state: the same binary and machine only.
   ResponseSteps response;
   AppendProgress append;
-  std::array<EngineEvent, kMaxEvents> events;  ///< Of this step alone.
+  std::array<EngineEvent, kMaxEvents> events;  ///< Events in this step alone.
   int event_count = 0;
 };
 
@@ -180,6 +185,7 @@ class GaitEngine {
   /// As of the last step; valid until the next Advance or Restore.
   const EngineOutput& Output();
 
+  /// Skeleton of the character, and the track that it is on now.
   const stream::Skeleton& skeleton() const;
   const stream::Track& track() const;
 
@@ -218,7 +224,7 @@ struct Failure {
   const char* why = nullptr;
 };
 
-/// What is wrong with a state: simulation, curve or jump. What touches or drops beside the ribbon
+/// Failure in a state: simulation, curve or jump. A touch or a drop beside the ribbon
 /// is the curve's failure, with a foot in a pit the jump's, whatever else is wrong besides. `place`
 /// is the body's on the track.
 Failure FindFailure(const stream::Track& track, const terrain::TrackPlace& place,

@@ -88,7 +88,7 @@ void GaitEngine::Parts::PutBack(const char* why, double to_m, bool by_operator) 
 void GaitEngine::Parts::TakePutBack(const EngineInputs& inputs) {
   if (state.inputs.put_back_number != inputs.put_back_number) {
     state.inputs.put_back_number = inputs.put_back_number;
-    // Of a character that lies there it is only the end of its failure, a moment earlier.
+    // For a character that lies there it is only the end of its failure, a moment earlier.
     if (!state.fallen) {
       ++state.operator_put_backs;
       if (trial::GoesOn(state.trial)) ++state.trial.operator_put_backs;

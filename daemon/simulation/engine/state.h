@@ -18,7 +18,7 @@
 
 namespace footing::engine {
 
-/// What the engine has taken of its inputs so far.
+/// Numbers of the inputs that the engine has taken so far.
 struct InputMemory {
   std::uint64_t features_number = 0;
   std::uint64_t interface_number = 0;
@@ -75,7 +75,7 @@ struct TrackWorld {
   /// The track as the gait controllers see it: without its pits where it does not help over them.
   stream::Track sight;
   bool sees_ground = false;                          ///< That has slopes, steps or pits.
-  std::vector<stream::TrackSegment> first_segments;  ///< Of a track that grows: the file's.
+  std::vector<stream::TrackSegment> first_segments;  ///< The file's, on a track that grows.
   terrain::GroundWindow window;                      ///< Boxes that follow the character.
   physics::World world;
 };
@@ -86,12 +86,12 @@ Result<std::unique_ptr<TrackWorld>> MakeTrackWorld(stream::Track track,
                                                    const biped::BipedParameters& biped,
                                                    double step_s);
 
-/// What a GaitEngine owns; its methods are the parts of one step, in their order.
+/// Members of a GaitEngine; the methods are the parts of one step, in their order.
 struct GaitEngine::Parts {
   EngineConfig config;
   biped::BipedParameters biped;
   gait::GainTable gain_table;
-  gait::Gains gains;  ///< Of gains_gait at gains_speed_mps.
+  gait::Gains gains;  ///< Gains for gains_gait at gains_speed_mps.
   stream::Gait gains_gait = stream::Gait::kUnspecified;
   double gains_speed_mps = 0;
   stream::Skeleton skeleton;
@@ -100,7 +100,7 @@ struct GaitEngine::Parts {
 
   EngineState state;
   biped::BodyState body;
-  terrain::TrackPlace place;  ///< Of the body on the track, as of `body`.
+  terrain::TrackPlace place;  ///< Place of the body on the track, as of `body`.
   EngineOutput output;
   bool output_stale = true;
 
@@ -115,7 +115,7 @@ struct GaitEngine::Parts {
   void PutBack(const char* why, double to_m, bool by_operator);
   /// Takes in what the world shows after a step or a reset.
   void ReadBody();
-  /// What the gait controllers see of the ground; null where it is level for them.
+  /// Ground that the gait controllers see; null where it is level for them.
   const stream::Track* Sight() const {
     if (!on.sees_ground) return nullptr;
     return on.track.help_over_pits ? &on.track : &on.sight;

@@ -31,6 +31,7 @@ Result<void> Check(const Config& config);
 /// engine that does not run.
 Result<void> CheckApply(const Config& config, const std::vector<std::string>& settings);
 
+/// Request on the command line.
 struct CommandLine {
   Config config;
   bool json = false;  ///< Print the listening addresses as one JSON object.
@@ -49,7 +50,7 @@ Result<Config> ReadConfigAgain(int argc, char** argv);
 Result<serving::Served> StartService(boost::asio::io_context& io, const Config& config,
                                      const std::string& version);
 
-/// What StartService checks besides the config itself: reads all files and builds the engine, and
+/// Checks of StartService besides the config itself: reads all files and builds the engine, and
 /// opens no socket.
 Result<void> CheckService(const Config& config);
 

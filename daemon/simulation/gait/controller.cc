@@ -90,11 +90,11 @@ double GroundAtEnd(const stream::TrackSegment& segment) {
   return segment.start_m.z() + segment.length_m * std::sin(segment.slope_rad);
 }
 
-/// What the COM rises until lift-off grows with the spring's extension; the rest is learned.
+/// Rise of the COM until lift-off per extension of the spring; the rest is learned.
 constexpr double kRiseShare = 0.87;
 /// A plan this near to the nominal lift-off leaves it as it is.
 constexpr double kAsEverMps = 0.03;
-/// Of a new measure in the remembered one.
+/// Weight of a new measure in the remembered one.
 constexpr double kSmoothing = 0.3;
 
 /// The foot that carries or will carry; between both in jumping.
@@ -308,7 +308,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of one link: its centre's motion about the COM, and its own spin.
+/// Angular momentum of one link: its centre's motion about the COM, and its own spin.
 Vector3d LinkMomentum(const biped::BodyState& body, const biped::BipedParameters& biped,
                       const Vector3d& p_W, const Vector3d& v_W, const Vector3d& u_W,
                       const Vector3d& w_W) {
@@ -409,7 +409,7 @@ double SwingProgress(const Context& context, const GaitMemory& memory) {
   return std::clamp(context.TimeIn(memory) / SwingTime(context, memory), 0.0, 1.0);
 }
 
-/// What was planned for the last step, less that step.
+/// Takes one step off the strides planned to a pit.
 void CountStrideToPit(WalkingStep& step) {
   if (step.strides_to_pit && --*step.strides_to_pit < 0) step.strides_to_pit.reset();
 }

@@ -11,7 +11,7 @@
 
 namespace footing::gait {
 
-/// What one step of control is given. All borrowed for the call.
+/// Inputs of one step of control. All borrowed for the call.
 struct Context {
   const biped::BodyState& body;
   const biped::BipedParameters& biped;
@@ -93,7 +93,7 @@ std::optional<WalkPlan> StepAtPit(const Context& context, const GaitMemory& memo
 /// that it steps over; infinite when it may go on as it does.
 double SpeedBeforePit(const Context& context, const GaitMemory& memory);
 
-/// What Figure 5's machine asks of the present state.
+/// Cues that Figure 5's machine needs of the present state.
 WalkingCues SenseWalking(const Context& context, const GaitMemory& memory);
 
 /// Control laws of the present state: walking, and stepping as walking at no speed.

@@ -44,7 +44,7 @@ Pendulum SupportPendulum(const Context& context, const GaitMemory& memory) {
 
 WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& memory) {
   const WalkingGains& gains = context.gains.walking;
-  const double side = -biped::Side(memory.support_leg);  // Of the swing leg.
+  const double side = -biped::Side(memory.support_leg);  // Side of the swing leg.
   const auto [rate, capture_H] = SupportPendulum(context, memory);
   const double step_time_s = SwingTime(context, memory) + gains.double_support_time_s;
   const double growth = std::exp(rate * step_time_s);
@@ -197,7 +197,7 @@ void Learn(double error_mps, const Gains& gains, GaitMemory& memory) {
 }  // namespace
 
 void CountStep(const Context& context, GaitMemory& memory) {
-  const double made_heading_rad = memory.heading_rad;  // Of the step that ends here.
+  const double made_heading_rad = memory.heading_rad;  // Heading of the step that ends here.
   memory.heading_rad += context.goal.turn_per_step_rad;
   ++memory.steps;
   LastStep& last = memory.last_step;

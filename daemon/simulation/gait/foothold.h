@@ -19,6 +19,7 @@
 /// The paper writes angles of the leg; an offset divided by the leg's length is that angle.
 namespace footing::gait {
 
+/// Planned foothold of the swing leg, W.
 struct WalkingFoothold {
   Eigen::Vector3d p_WF_m = Eigen::Vector3d::Zero();
   double hurry = 0;                   ///< [0, 1): fraction by which the swing clock should gain.
@@ -63,9 +64,9 @@ void KeepLegsApart(const Context& context, const GaitMemory& memory, Targets& ta
 /// foothold is kept outside, the next one makes good.
 double SideStep(double outward_m, double gap_m);
 
-/// What shows of a command before physics can follow it: "a visible anticipation at once". Both are
-/// set-points of servos that run anyway, small enough not to disturb the balance.
-/// Pitch of the body, rad, forward positive, for the speed that v_d has still to gain.
+/// Pitch of the body, rad, forward positive, for the speed that v_d has still to gain. This and the
+/// crouch anticipate a command before physics can follow it ("a visible anticipation at once"):
+/// they are set-points of servos that run anyway, small enough not to disturb the balance.
 double AnticipatedLean(const Context& context, const GaitMemory& memory);
 
 /// How much lower the hips of a walk go, m, that waits for its Fall to jump.

@@ -11,7 +11,7 @@ namespace footing::gait {
 struct GainField {
   std::string_view name;  ///< "section.field" as in gains.h.
   std::string_view unit;
-  double min, max;        ///< What a table may say.
+  double min, max;        ///< Range allowed in a table.
   double& (*of)(Gains&);  ///< Where it is.
 
   double Of(const Gains& gains) const { return of(const_cast<Gains&>(gains)); }  // NOLINT: read

@@ -58,7 +58,7 @@ enum class RunningPhase { kUpwardFlight, kDownwardFlight, kCompression, kExtensi
 const char* Name(WalkingPhase phase);
 const char* Name(RunningPhase phase);
 
-/// What the walking machine asks of the state.
+/// Cues of the state for the walking machine.
 struct WalkingCues {
   /// Its time is over and the front foot touches, or has had 0.1 s more: the rear leg is picked up,
   /// whatever load it still has.
@@ -67,7 +67,7 @@ struct WalkingCues {
   bool swing_foot_landed = false;
 };
 
-/// What the running machine asks of the state. In jumping the two legs are one virtual leg.
+/// Cues of the state for the running machine. In jumping the two legs are one virtual leg.
 struct RunningCues {
   bool falling = false;       ///< The COM moves down.
   bool landed_early = false;  ///< A foot touches, long after lift-off, still moving up.
@@ -108,6 +108,7 @@ inline constexpr std::array<Arrow<RunningPhase, RunningCues>, 5> kRunningArrows{
      "leg at its thrust length, or off the ground"},
 }};
 
+/// The phase that follows by the tables above.
 WalkingPhase Next(WalkingPhase phase, const WalkingCues& cues);
 RunningPhase Next(RunningPhase phase, const RunningCues& cues);
 

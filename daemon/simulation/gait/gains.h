@@ -39,12 +39,13 @@ struct AttitudeGains {
                             ///< acceleration together point along the body.
   double jump_lean_rad_per_mps = -0.14;  ///< Pitch set-point: both legs swinging forward
                                          ///< together pitch the body forward.
-  double hop_yaw_momentum_share = 0.5;   ///< Of the legs' yaw momentum, taken for the body's own.
-  double friction_share = 0.7;           ///< Of the friction cone, for hip torque.
-  double turning_friction_share = 0.8;   ///< Of the torsional friction, for torque along the leg.
+  double hop_yaw_momentum_share = 0.5;   ///< Legs' yaw momentum, taken for the body's own.
+  double friction_share = 0.7;           ///< Part of the friction cone, for hip torque.
+  double turning_friction_share = 0.8;   ///< Torsional friction's part, for torque along the leg.
   double turning_limit_nm = 8;           ///< By fore-aft forces of both feet.
 };
 
+/// Gains of walking and stepping.
 struct WalkingGains {
   double swing_time_s = 0.32;  ///< Rise and Fall.
   double double_support_time_s = 0.05;
@@ -107,19 +108,19 @@ struct CurveGains {
 struct SteppingGains {
   double low_margin_m = 0.06;    ///< Foot's centre from an edge, below it.
   double high_margin_m = 0.04;   ///< Above it.
-  double clearance_m = 0.02;     ///< Of a foot in flight, over the edge, ...
+  double clearance_m = 0.02;     ///< Foot in flight over the edge, ...
   double riser_margin_m = 0.04;  ///< ... and of its centre before it, while it is lower.
   double shortest_leg_m = 0.56;
-  double shift_limit_m = 0.12;    ///< Of a foothold.
-  double shift_limit_mps = 0.25;  ///< Of the lift-off speed, for the same end.
+  double shift_limit_m = 0.12;    ///< Limit for a foothold.
+  double shift_limit_mps = 0.25;  ///< Limit for the lift-off speed, for the same end.
   double slowest_mps = 0.8;       ///< Below, flight time moves no foothold.
-  double slower_limit_mps = 0.5;  ///< Of the lift-off speed, going down.
-  double faster_limit_mps = 1.2;  ///< Going up.
+  double slower_limit_mps = 0.5;  ///< Lift-off slower by at most this, going down.
+  double faster_limit_mps = 1.2;  ///< Faster by at most this, going up.
 };
 
 /// Figure 9: how energy is added and taken out between the gaits.
 struct TransitionGains {
-  double thrust_from_swing = 0.55;  ///< Of the swing: from here Fall may become a thrust.
+  double thrust_from_swing = 0.55;  ///< Part of the swing from which Fall may become a thrust.
   double thrust_to_run_mps = 1.17;  ///< Vertical lift-off speed out of walking.
   double thrust_to_jump_mps = 1.0;
   double run_to_walk_mps = 1.4;               ///< Run slows to this, ...
@@ -127,7 +128,7 @@ struct TransitionGains {
   double leaving_run_mps2 = 8;                ///< Braking of v_d in a run that is to end.
   double leaving_run_gain_s = 0.14;           ///< k_R then, while faster than v_d.
   double leaving_run_lift_off_mps = 0.8;      ///< Lower hops then: sooner down, less to absorb.
-  double leaving_run_damping_ns_per_m = 475;  ///< Of the leg while it shortens then.
+  double leaving_run_damping_ns_per_m = 475;  ///< Damping of the leg while it shortens then.
   double landing_reach_m = 0.08;  ///< The last step's foot is put this much further ahead.
   double run_landing_stiffness_n_per_m = 1800;
   double run_landing_damping_ns_per_m = 420;
@@ -145,11 +146,11 @@ struct PitGains {
   double jump_lift_off_min_mps = 1.1;
   double run_width_max_m = 0.45;  ///< A run crosses this by itself; wider ones want a jump.
   double sight_m = 3;             ///< Nearer pits are planned for even when out of reach.
-  double shift_back_m = 0.12;     ///< Of a foothold that would come to lie in the pit.
+  double shift_back_m = 0.12;     ///< Shift of a foothold that would come to lie in the pit.
   double shift_ahead_m = 0.25;
   double shift_ahead_s = 0.1;  ///< At most this times the speed: 0.1 s ahead brakes by half of it.
   double jump_speed_max_mps = 3.6;  ///< A faster run crosses as it is, its jump pending.
-  double leap_roll_share = 1.5;     ///< Of the legs' roll momentum, against which the body turns.
+  double leap_roll_share = 1.5;     ///< Legs' roll momentum, against which the body turns.
   double leap_lean_rad_per_mps = -0.02;
   WalkLimits walk;
   double walk_width_max_m = 0.30;  ///< A walk steps over pits up to this; ...
@@ -160,7 +161,7 @@ struct PitGains {
   double walk_stop_mps2 = 0.4;     ///< ... braking by this.
 };
 
-/// What a push needs, beyond what the gaits need.
+/// Gains of recovery from a push, beyond those of the gaits.
 struct RecoveryGains {
   double outrun_mps = 2.2;            ///< A walk pushed beyond this goes on by running steps.
   double idle_yield = 1.25;           ///< Roll of running's idle leg for the body's roll, ...
@@ -178,13 +179,14 @@ struct CadenceGains {
   double run_lift_off_max_mps = 1.7;
 };
 
-/// What shows of a command at once.
+/// Anticipation of a command, visible at once.
 struct AnticipationGains {
-  double lean_rad_per_mps = 0.05;  ///< Of speed still to be gained.
+  double lean_rad_per_mps = 0.05;  ///< Per speed still to be gained.
   double lean_limit_rad = 0.08;
   double crouch_m = 0.03;
 };
 
+/// All gains of one gait at one speed.
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;

@@ -134,7 +134,7 @@ namespace {
 
 /// Strides up to a pit are at least this share of the walk's own.
 constexpr double kShortestShare = 0.5;
-/// What was planned before costs this much less.
+/// Factor on the cost of the plan made before.
 constexpr double kPreferred = 0.3;
 /// The stride after one that was made longer to step over is shorter by at most this share.
 constexpr double kMostShorter = 0.7;

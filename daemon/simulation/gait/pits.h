@@ -10,17 +10,18 @@
 /// are shifted only by what is left over.
 namespace footing::gait {
 
+/// A pit on the way, distances along the heading.
 struct PitAhead {
   double near_m = 0;  ///< From the foothold to the near edge; negative behind it.
   double far_m = 0;
-  double rise_m = 0;  ///< Of the ground behind the pit over that before it.
+  double rise_m = 0;  ///< Rise of the ground behind the pit over that before it.
 };
 
 /// Where a hop with a vertical lift-off speed lands:
 ///   stride = support + speed * FlightTime, from foothold to foothold.
 struct Hop {
   double speed_mps = 0;
-  double support_m = 0;        ///< What the COM moves over the ground while a foot is down.
+  double support_m = 0;        ///< Travel of the COM over the ground while a foot is down.
   double drop_m = 0;           ///< COM at lift-off over COM at touchdown, at `nominal_mps`.
   double drop_per_mps = 0.06;  ///< A faster lift-off is from a longer leg.
   double nominal_mps = 1.3;    ///< Vertical lift-off speed when nothing lies ahead.
@@ -37,7 +38,7 @@ struct Thrust {
   double stiffness_n_per_m = 0;
   double mass_kg = 0;
   double feet_kg = 0;
-  double loss_share = 0;  ///< Of the spring's energy.
+  double loss_share = 0;  ///< Lost part of the spring's energy.
 
   /// The compression x from which the lift-off speed v is reached.
   double ExtensionFor(double lift_off_mps) const;
@@ -47,15 +48,17 @@ struct Thrust {
 
 inline constexpr int kStridesMax = 4;  ///< Planned before the last foothold.
 
+/// Limits of the hops up to a pit and over it.
 struct PitLimits {
   double edge_margin_m = 0.06;     ///< From the foothold to the near edge.
   double landing_margin_m = 0.14;  ///< From the far edge to the foothold.
   double aim_margin_m = 0.06;      ///< Aimed at besides, at both.
   double lift_off_min_mps = 0.8;
-  double lift_off_max_mps = 1.7;  ///< Of the strides before.
-  double leap_max_mps = 3.2;      ///< Of the hop over the pit.
+  double lift_off_max_mps = 1.7;  ///< Limit for the strides before.
+  double leap_max_mps = 3.2;      ///< Limit for the hop over the pit.
 };
 
+/// Plan of the hops up to a pit and over it.
 struct PitPlan {
   bool leaps = false;       ///< The hop from this foothold crosses the pit.
   bool reaches = false;     ///< The plan stays within its limits.
@@ -75,7 +78,7 @@ double ShiftOffPit(const PitAhead& pit, const PitLimits& limits, double back_m, 
 /// The footholds of a walk up to a pit and over it. Distances are along the heading, from the
 /// supporting foot.
 ///
-/// Of a linear inverted pendulum the capture point xi = x + v / w moves away from the supporting
+/// The capture point xi = x + v / w of a linear inverted pendulum moves away from the supporting
 /// foot p by the factor e^(w T) in a step of time T. Footholds p_1, p_2, ... are reached, and the
 /// walk goes on at its speed, when the first one lies at
 ///   p_1 = xi - sum_j d^j (p_(j+1) - p_j),   d = e^(-w T),
@@ -88,12 +91,13 @@ struct WalkAhead {
   double stride_m = 0;   ///< v_d T, from foothold to foothold.
 };
 
+/// Limits of the strides up to a pit and over it.
 struct WalkLimits {
   double near_margin_m = 0.06;  ///< From the last foothold's centre to the near edge.
   double far_margin_m = 0.04;   ///< From the far edge to the first foothold behind it.
   double aim_margin_m = 0.03;   ///< Aimed at besides, at both.
   double stride_max_m = 0.70;
-  double stride_min_m = -0.10;  ///< Of the strides before a pit.
+  double stride_min_m = -0.10;  ///< Limit for the strides before a pit.
 };
 
 /// Strides before a pit that are planned at most; further away it is not.

@@ -31,7 +31,7 @@ constexpr double kStalledAfterS = 0.10;
 constexpr double kStalledRateMps = 0.25;
 constexpr double kStalledGrowthMps = 0.8;
 constexpr double kLowestJumpM = 0.02;
-/// Of a leap out of a run, which is faster than jumps are: as high as the fastest of those.
+/// Height of a leap out of a run, which is faster than jumps are: that of the fastest jump, m.
 constexpr double kHighestLeapM = 0.5;
 /// A jump may still be prepared this long after the apex: then its foothold can be reached, s.
 constexpr double kPreparesUntilS = 0.05;
@@ -391,7 +391,7 @@ void PrepareLongFlight(const Context& context, const GaitMemory& memory, Targets
   targets.lean_rad = gains.leap_lean_rad_per_mps * memory.speed.desired_mps;
 }
 
-/// What a flight turns by is the momentum of body and legs together, so that is what support damps
+/// A flight turns by the momentum of body and legs together, so that is what support damps
 /// in roll and pitch, as if it were the body's own rate. In yaw it is in part: at lift-off the legs
 /// swing against each other, and do so again before the next touchdown.
 void DampWholeMomentum(const Context& context, const GaitMemory& memory, Targets& targets) {

@@ -5,7 +5,7 @@
 
 namespace footing::gait {
 
-/// What Figure 6's machine asks of the present state.
+/// Cues that Figure 6's machine needs of the present state.
 RunningCues SenseRunning(const Context& context, const GaitMemory& memory);
 
 /// Control laws of the present state. Jumping has the same with both legs as one virtual leg

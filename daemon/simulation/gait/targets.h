@@ -27,6 +27,7 @@ struct AxialTarget {
   double share = 1;
 };
 
+/// Tasks of a leg's hips and length.
 enum class LegTask {
   kPlace,      ///< Hips and length bring the foot to r_HF_W.
   kPlaceHips,  ///< Hips aim the foot along r_HF_W, the length follows `axial`.
@@ -34,6 +35,7 @@ enum class LegTask {
   kFree,       ///< Hips are damped only, the length follows `axial`.
 };
 
+/// Target of one leg.
 struct LegTarget {
   LegTask task = LegTask::kFree;
   Eigen::Vector3d r_HF_W_m = Eigen::Vector3d::Zero();  ///< From the hip to where the foot is to be.
@@ -41,7 +43,7 @@ struct LegTarget {
   double hip_damping_nms_per_rad = 0;  ///< kFree.
 };
 
-/// What a state of a machine wants of the joints, before the servos.
+/// Targets of the joints in a state of a machine, before the servos.
 struct Targets {
   std::array<LegTarget, 2> legs;
   bool hopping = false;  ///< Yaw servo of running and jumping.
@@ -51,7 +53,7 @@ struct Targets {
   Eigen::Vector3d rate_W_radps = Eigen::Vector3d::Zero();  ///< Desired of the body.
 };
 
-/// What the servos remember of the last step, for the rates of their targets.
+/// State of the servos from the last step, for the rates of their targets.
 struct ServoMemory {
   std::array<bool, 2> placed{};  ///< The leg's hips were servoed in the last step.
   std::array<std::array<double, 4>, 2> joint_target{};
@@ -86,7 +88,7 @@ struct GaitTransition {
 struct WalkingStep {
   Eigen::Vector3d swing_start_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d landed_W_m = Eigen::Vector3d::Zero();  ///< Where the supporting foot touched.
-  double swing_time_s = 0;                               ///< Of this step; 0: the gait's own.
+  double swing_time_s = 0;                               ///< Time of this step; 0: the gait's own.
   std::optional<int> strides_to_pit;  ///< With this one; 0 steps over it; none is planned for.
   double support_height_m = 0;        ///< Ground's height that the hip goes by, foot ball's centre.
 };
@@ -116,23 +118,23 @@ struct PitSighting {
   Eigen::Vector2d near_W_m = Eigen::Vector2d::Zero();  ///< A point of the near edge.
   Eigen::Vector2d along_W = Eigen::Vector2d::UnitX();  ///< Across the edges.
   double length_m = 0;                                 ///< From edge to edge.
-  double rise_m = 0;                                   ///< Of the ground behind it.
+  double rise_m = 0;                                   ///< Rise of the ground behind it.
 };
 
 /// The last hop and the support in progress, for the next hop's prediction. Lengths along the
 /// heading.
 struct HopMeasures {
   double flight_mps = 0;
-  double foot_ahead_m = 0;  ///< Of the COM at touchdown.
-  double com_ahead_m = 0;   ///< Of the foot at lift-off.
+  double foot_ahead_m = 0;  ///< Foot ahead of the COM at touchdown.
+  double com_ahead_m = 0;   ///< COM ahead of the foot at lift-off.
   double touchdown_height_m = 0.80;
   double foothold_z_m = 0;
   double drop_m = 0.01;      ///< COM's height over its foot at lift-off above that at touchdown.
-  double extension_m = 0;    ///< Of the spring in this support; 0 when not known.
-  double loss_share = 0.25;  ///< Of the spring's energy.
+  double extension_m = 0;    ///< Extension of the spring in this support; 0 when not known.
+  double loss_share = 0.25;  ///< Lost part of the spring's energy.
   double extension_time_s = 0.09;
   double bottom_height_m = 0;    ///< COM over the foot where the extension began.
-  double rise_offset_m = -0.04;  ///< What it rises until lift-off, less a share of the extension.
+  double rise_offset_m = -0.04;  ///< COM's rise until lift-off, less a share of the extension.
 };
 
 /// The pit ahead and the plan of the hops up to it (pit_sight.h).
@@ -144,23 +146,23 @@ struct PitMemory {
   bool last_foothold = false;  ///< The coming foothold is the last one before it.
   bool leaping = false;        ///< This hop crosses it.
   double lift_off_mps = 0;  ///< Vertical, of this support when the pit wants another than the gait.
-  double shift_m = 0;       ///< By which the foothold in flight is moved along the heading.
+  double shift_m = 0;       ///< Shift of the foothold in flight along the heading.
 };
 
 /// A step of the ground that feet in flight keep clear of.
 struct EdgeMemory {
   bool there = false;
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where the character's path crosses it.
-  double height_m = 0;                              ///< Of the higher side.
+  double height_m = 0;                              ///< Height of the higher side.
 };
 
-/// What running and jumping plan by the ground they see (ground_plan.h).
+/// State of running's and jumping's plan by the ground that they see (ground_plan.h).
 struct GroundMemory {
-  double climb_mps = 0;      ///< Of this lift-off, beyond the gait's own.
+  double climb_mps = 0;      ///< Added to this lift-off, beyond the gait's own.
   double slope = 0;          ///< Rise over run along the heading, under this support's foot.
-  double shift_m = 0;        ///< Of the foothold in flight, off an edge, along the heading.
+  double shift_m = 0;        ///< Shift of the foothold in flight, off an edge, along the heading.
   double towards = 0;        ///< Side of the edge that this flight has decided for: shift_m's sign.
-  EdgeMemory behind, ahead;  ///< Of the foothold.
+  EdgeMemory behind, ahead;  ///< Edges about the foothold.
 };
 
 /// All that the controllers remember between steps: a plain value.
@@ -177,7 +179,7 @@ struct GaitMemory {
   std::uint64_t steps = 0;
   LastStep last_step;
 
-  Eigen::Vector3d foothold_W_m = Eigen::Vector3d::Zero();  ///< Of the foot in flight.
+  Eigen::Vector3d foothold_W_m = Eigen::Vector3d::Zero();  ///< Foothold of the foot in flight.
   SpeedTracking speed;
   GaitTransition transition;
   WalkingStep walking_step;
@@ -208,6 +210,7 @@ inline Eigen::Vector3d ToHeading(double heading_rad, const Eigen::Vector3d& a_W)
   return {c * a_W.x() + s * a_W.y(), -s * a_W.x() + c * a_W.y(), a_W.z()};
 }
 
+/// From the heading frame H to W.
 inline Eigen::Vector3d ToWorld(double heading_rad, const Eigen::Vector3d& a_H) {
   return ToHeading(-heading_rad, a_H);
 }

@@ -4,7 +4,7 @@
 
 #include "daemon/simulation/gait/controller.h"
 
-/// What running and jumping make of the ground they see: slopes, and steps up and down. Pits are
+/// Running and jumping over the ground that they see: slopes, and steps up and down. Pits are
 /// not this plan's. Without seen ground every function leaves things as they are.
 ///
 /// On a slope s (rise over run) a hop is the level one sheared by s: vertical speeds are those

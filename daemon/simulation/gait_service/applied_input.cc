@@ -67,7 +67,7 @@ FOOTING_BOTH_WAYS_OF(mapping::BoardInput, v1::BoardInput)
     way.value.member = FromProto(way.message.name());            \
   }
 
-/// What a person wears, holds and stands on.
+/// Fields of a person's devices: worn, held and stood on.
 template <typename Way>
 void Fields(Way way, const mapping::Inputs&) {
   FOOTING_MESSAGE_OF(hands.left, left);

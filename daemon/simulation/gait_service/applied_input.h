@@ -9,6 +9,7 @@ namespace footing::gait_service {
 /// which a message has the options. One that names no interface is from before there were several:
 /// wrist.
 v1::AppliedInput ToAppliedInput(const Applied& applied);
+/// The other way round, for replays.
 Applied FromAppliedInput(const v1::AppliedInput& message);
 
 }  // namespace footing::gait_service

@@ -17,9 +17,9 @@ namespace footing::gait_service {
 /// Settings of the gait engine's service.
 struct Config {
   std::string interface = "wrist";
-  std::string turn_by = "head";     ///< Of the interface leg: head, feet or trunk.
+  std::string turn_by = "head";     ///< For the interface leg: head, feet or trunk.
   bool camera_roll = false;         ///< Likewise: the picture follows the head.
-  bool boards_may_be_left = false;  ///< Of the interface boards: both feet may leave them.
+  bool boards_may_be_left = false;  ///< For the interface boards: both feet may leave them.
   std::string mapping_table;        ///< Path, of the interface; empty: the built-in one.
   std::string track = "endless";    ///< Name of a built-in track, or a path.
   double frame_rate_hz = 100;       ///< CharacterFrames a second.
@@ -33,13 +33,13 @@ struct Config {
 /// Usage error that lists what there is when the interface or what turns is unknown.
 Result<void> Check(const Config& config);
 
-/// What may turn with the interface leg, by its number in the protocol; kUnspecified for others.
+/// Source of turns in the interface leg, by its number in the protocol; kUnspecified for others.
 stream::TurnSource LegTurnSource(int number);
 
 /// The interface that a checked config asks for.
 mapping::InterfaceOptions OptionsOf(const Config& config);
 
-/// What the gait engine really runs with, as the channel "config" publishes it: so that a recording
+/// Effective settings of the gait engine, as the channel "config" publishes it: so that a recording
 /// can be understood when program, tables and gains have changed. docs/protocol.md lists its keys.
 class EffectiveConfig {
  public:
@@ -67,6 +67,7 @@ std::string TableIn(const v1::EffectiveConfig& message, std::uint64_t interface_
 
 namespace footing::engine_files {
 
+/// Track, interface and tables whose files ReadTexts reads.
 struct Wish {
   std::string track = "plain";  ///< Name of a built-in track, or a path.
   stream::UserInterface interface = stream::UserInterface::kWrist;

@@ -29,6 +29,7 @@ class GaitRun {
   GaitRun(engine::GaitEngine engine, TrackExchange& tracks)
       : engine_(std::move(engine)), tracks_(&tracks) {}
 
+  /// One step, with new inputs where there are any.
   void StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame);
   void FillOnSimThread(Frame& frame) { frame.output = engine_.Output(); }
   void TakenOnSimThread(Frame& frame) const;
@@ -51,6 +52,7 @@ class GaitLine {
   static Result<std::unique_ptr<GaitLine>> Create(const serving::Config& common,
                                                   const Config& config, int wake_descriptor);
 
+  /// Channels that it publishes.
   static std::vector<transport::Channel> Channels();
   /// The engine, its interfaces, and trials.
   static std::vector<std::string> Capabilities();
@@ -62,8 +64,10 @@ class GaitLine {
   double frame_rate_hz() const { return frame_rate_hz_; }
 
   serving::SimulationThread<GaitRun>& thread() { return thread_; }
+  /// Channels that a new viewer needs, as of now.
   std::vector<transport::ChannelBytes> Retained() const;
   void OnTick(const v1::Tick& tick, std::int64_t now_ns) { input_.OnTick(tick, now_ns); }
+  /// Carries out a command of a session, if it has the lease that the command needs.
   v1::CommandResult OnCommand(const transport::SessionInfo& who, const v1::Command& command);
   void OnSessionEnd(const transport::SessionInfo& who) {
     game_.OnSessionEnd(who);
@@ -72,6 +76,7 @@ class GaitLine {
     lease_.EndSession(who.session);
     input_.OnSessionEnd(who.session);
   }
+  /// Channels to publish for a frame of the simulation thread.
   std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
 
  private:
@@ -80,7 +85,7 @@ class GaitLine {
   Result<void> SetInterface(const transport::SessionInfo& who, const v1::SetInterface& message);
   /// Stops the trial of a game whose leader has gone: the runner would run off its track's end.
   void EndLeftGame();
-  /// What changed of the retained channels since the last frame.
+  /// Adds the changes of the retained channels since the last frame.
   void AddChanges(const Frame& frame, bool switched,
                   std::vector<transport::ChannelBytes>& channels);
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);

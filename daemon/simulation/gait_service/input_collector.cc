@@ -16,7 +16,7 @@ namespace {
 using stream::DeviceRole;
 using stream::UserInterface;
 
-/// Of a Wiimote's two button bytes, as MotionSample has them.
+/// Bit in a Wiimote's two button bytes, as MotionSample has them.
 constexpr std::uint32_t kButtonA = 0x0008;
 
 DeviceRole RoleIn(v1::DeviceRole role) {
@@ -62,7 +62,7 @@ DeviceRole InputCollector::RoleOf(std::uint32_t device) const {
 }
 
 Result<std::string> InputCollector::RigFor(const mapping::InterfaceOptions& options) const {
-  std::map<std::string, std::uint32_t> roles;  // Of each rig.
+  std::map<std::string, std::uint32_t> roles;  // Roles in each rig.
   if (!rig_.empty()) roles[rig_] = 0;
   for (const v1::DeviceStatus& device : status_.devices()) {
     const bool usable = device.state() != v1::DEVICE_STATE_LOST;

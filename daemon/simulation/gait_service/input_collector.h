@@ -61,7 +61,7 @@ class InputCollector {
   bool TakeFeatures(const v1::FeatureFrame& frame);
   bool TakeStick(const v1::Tick& tick, std::int64_t now_ns);
   bool TakeBoards(const v1::Tick& tick, std::int64_t now_ns);
-  /// What has not been heard of for too long; true when that is new.
+  /// Drops inputs not heard of for too long; true when that is new.
   bool Expire(std::int64_t now_ns);
   stream::DeviceRole RoleOf(std::uint32_t device) const;
 
@@ -88,7 +88,7 @@ class SensorInput {
   /// Each live tick is new to the engine, also one in which all devices of the rig are silent: that
   /// footingd answers and says so is not the same as that nothing comes from it.
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
-  /// What the engine has done with the inputs so far.
+  /// The engine's report on the inputs so far.
   void OnFrame(const Frame& frame) { appends_taken_ = frame.output.append.number; }
   /// DirectGait, Push, PutBack and AppendSegment; anything else is answered with what there is.
   v1::CommandResult OnCommand(const v1::Command& command, std::uint64_t session);
@@ -117,9 +117,9 @@ class SensorInput {
   exchange::Latest<Inputs>& out_;
   Responses& responses_;
   Inputs inputs_;
-  FeatureStamps stamps_;              ///< Of the newest that was not silence.
+  FeatureStamps stamps_;              ///< Stamps of the newest that was not silence.
   std::uint64_t appends_taken_ = 0;   ///< Or refused, by the engine.
-  std::uint64_t direct_session_ = 0;  ///< Of the newest DirectGait.
+  std::uint64_t direct_session_ = 0;  ///< Session of the newest DirectGait.
 };
 
 }  // namespace footing::gait_service

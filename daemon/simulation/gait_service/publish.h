@@ -31,7 +31,7 @@ inline constexpr int kMaxApplied = 16;
 inline constexpr int kMaxFrameEvents = 32;
 inline constexpr int kMaxAdded = 64;
 
-/// What the simulation thread hands over some hundred times a second. Fixed size: filling and
+/// Frame that the simulation thread hands over some hundred times a second. Fixed size: filling and
 /// moving it allocates nothing.
 struct Frame {
   engine::EngineOutput output;
@@ -102,7 +102,7 @@ class FailureRecord {
     bool in_trial = false;
   };
 
-  /// Of an entry that was withdrawn or restored just now.
+  /// Counts an entry that was withdrawn or restored just now.
   void CountWithdrawn(const Entry& entry);
 
   std::map<std::uint64_t, Entry> entries_;  ///< By their numbers.

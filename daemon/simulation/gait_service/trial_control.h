@@ -84,7 +84,7 @@ class TrialControl {
   const Options options_;
   TrackExchange& exchange_;
   engine::TrialInputs inputs_;
-  stream::TrialPhase phase_ = stream::TrialPhase::kUnspecified;  ///< Of the last frame's trial.
+  stream::TrialPhase phase_ = stream::TrialPhase::kUnspecified;  ///< The last frame's trial.
   std::deque<Trial> trials_;  ///< The one of the last frame, and those on their way to the engine.
   FailureRecord failures_;
 };

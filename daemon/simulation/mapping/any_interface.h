@@ -26,6 +26,7 @@ inline constexpr const char* kLegMappingFile = "leg_mapping.json";
 /// Every key, nothing unknown, all in range. `origin` names the file.
 Result<LegMapping> ParseLegMapping(const std::string& text, const std::string& origin);
 
+/// Options of the leg interface.
 struct LegOptions {
   stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< kHead, kFeet or kTrunk.
   /// The picture follows the head; the table may choose that, too.
@@ -52,7 +53,7 @@ class LegInterface {
 
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
-  /// What the limbs showed before does not count.
+  /// Forgets what the limbs showed before.
   void StartAgain() { gait_.Rest(); }
   const stream::InterfaceState& state() const { return state_; }
 
@@ -99,7 +100,7 @@ class AnyInterface {
   void StartAgain();
   /// A new trial: how the person holds the controllers is learned again where it is learned.
   void RenewGrip();
-  /// What it believes that the person does, as of the last Advance.
+  /// The person's movement as the interface takes it, as of the last Advance.
   const stream::InterfaceState& state() const;
 
  private:

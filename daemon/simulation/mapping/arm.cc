@@ -94,7 +94,7 @@ std::optional<double> MeanElevation(const LimbPair& hands) {
   return (*left_rad + *right_rad) / 2;
 }
 
-/// Of both hands.
+/// Mean of both hands.
 std::optional<double> MeanRotation(const LimbPair& hands, bool by_swing) {
   const auto left_rad = ForearmRotation(hands.left, by_swing),
              right_rad = ForearmRotation(hands.right, by_swing);
@@ -102,7 +102,7 @@ std::optional<double> MeanRotation(const LimbPair& hands, bool by_swing) {
   return (*left_rad + *right_rad) / 2;
 }
 
-/// What arms that hang still show: no twist, but one that is held aside.
+/// Roll of arms that hang still: they show no twist, but one that is held aside.
 std::optional<double> MeanRoll(const LimbPair& hands) {
   if (!hands.left.inclination_valid || !hands.right.inclination_valid) return std::nullopt;
   return (hands.left.roll_rad + hands.right.roll_rad) / 2;

@@ -42,7 +42,7 @@ class NeutralGrip {
   bool known_ = false;
   double neutral_rad_ = 0;
   double seen_s_ = 0;      ///< Length of what the neutral is the mean of.
-  double time_s_ = 0;      ///< Of the newest reading.
+  double time_s_ = 0;      ///< Time of the newest reading.
   bool striding_ = false;  ///< There is a reading of the present strides,
   bool strode_ = false;    ///< or of earlier ones: later rests do not count.
   bool hanging_ = false;
@@ -101,7 +101,7 @@ class ArmInterface {
 
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
-  /// What the limbs showed before does not count.
+  /// Forgets what the limbs showed before.
   void StartAgain() { gait_.Rest(); }
   /// How the controllers lie in the hands is learned again.
   void RenewGrip() { grip_.Renew(); }

@@ -90,7 +90,7 @@ class BoardsInterface {
   SettledGait settled_;
   Turn turn_;
   double time_s_ = 0;
-  board::Weight weight_;    ///< Of who stands there.
+  board::Weight weight_;    ///< Weight of the person there.
   double gone_s_ = 0;       ///< How long both feet have been off.
   double back_s_ = 0;       ///< How long somebody has stood again.
   bool off_ = true;         ///< Both feet are off, or came back only just now.

@@ -12,8 +12,8 @@
 #include "common/stream/sensor.h"
 #include "common/stream/user_interface.h"
 
-/// What the user interfaces get: plain values of fixed size. Copying allocates nothing, so they can
-/// pass to the simulation thread.
+/// Inputs of the user interfaces: plain values of fixed size. Copying allocates nothing, so they
+/// can pass to the simulation thread.
 namespace footing::mapping {
 
 /// The features of one controller (gait paper, section 6).
@@ -28,7 +28,7 @@ struct LimbFeatures {
   double roll_rad = 0;   ///< Left side higher is positive.
   double pitch_rad = 0;  ///< Front higher is positive.
   bool swing_valid = false;
-  double swing_rad = 0;  ///< Of the horizontal swing from the controller's front, left positive.
+  double swing_rad = 0;  ///< Horizontal swing from the controller's front, left positive.
   bool mounted = false;  ///< The features are of the frame M of a perfect mounting, else of S.
 
   bool operator==(const LimbFeatures&) const = default;
@@ -51,7 +51,7 @@ struct StickInput {
   double y = 0;               ///< -1 back to 1 front.
   bool pressed = false;       ///< Button A.
   std::uint64_t presses = 0;  ///< So far; none is lost between two inputs.
-  /// Of that Wiimote, also while it is not present; unspecified: not known.
+  /// Role of that Wiimote, also while it is not present; unspecified: not known.
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
 
   bool operator==(const StickInput&) const = default;
@@ -78,7 +78,7 @@ constexpr std::uint32_t Unmounted(const LimbFeatures& limb, stream::DeviceRole r
   return !limb.present || limb.mounted ? 0 : stream::RoleBit(role);
 }
 
-/// What one person wears, holds and stands on at one instant.
+/// Readings of the devices that one person wears, holds and stands on at one instant.
 struct Inputs {
   LimbPair hands;
   LimbPair legs;
@@ -115,7 +115,7 @@ struct Scaling {
   bool Rises() const { return from_min < from_max && to_min <= to_max; }
 };
 
-/// Of a number in the file; it is stored in SI.
+/// Unit of a number in the file; it is stored in SI.
 enum class Unit { kSi, kDegrees };
 
 /// One number of a table.

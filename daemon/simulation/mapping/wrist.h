@@ -20,7 +20,7 @@ class SettledGait {
   void Reset(stream::Gait gait);
 
   stream::Gait gait() const { return gait_; }
-  /// What is seen and has not settled yet; kUnspecified: nothing.
+  /// Gait that is seen and has not settled yet; kUnspecified: none.
   stream::Gait next() const { return next_; }
   /// The part of its time that is over, 0 to 1.
   double share() const { return next_ == stream::Gait::kUnspecified ? 0 : share_; }
@@ -33,8 +33,8 @@ class SettledGait {
   double share_ = 0;
 };
 
-/// What the wrist, the arm and the leg interface share: two limbs that move alternately walk or
-/// run, and together they jump (gait paper, section 7, figure 9).
+/// Mapping that the wrist, the arm and the leg interface share: two limbs that move alternately
+/// walk or run, and together they jump (gait paper, section 7, figure 9).
 struct SwingMapping {
   Scaling walk_mps_from_hz;
   Scaling run_mps_from_hz;
@@ -42,7 +42,7 @@ struct SwingMapping {
   Scaling jump_m_from_mps2;
   double in_phase_below_rad = 0;
   double out_of_phase_above_rad = 0;
-  /// What the features show must last this part of a cycle before it starts a walk or a run from
+  /// Features must last this part of a cycle before they start a walk or a run from
   /// rest, before it starts a jump or changes one gait into another, and in any case this time: see
   /// SettledGait.
   double start_cycles = 0;
@@ -130,7 +130,7 @@ class WristInterface {
 
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
-  /// What the limbs showed before does not count.
+  /// Forgets what the limbs showed before.
   void StartAgain() { gait_.Rest(); }
   const stream::InterfaceState& state() const { return state_; }
 

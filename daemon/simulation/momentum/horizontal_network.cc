@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/board/geometry.h"
 #include "common/base/result.h"
 #include "common/base/units.h"
+#include "common/board/geometry.h"
 
 namespace footing::momentum {
 namespace {

@@ -15,12 +15,13 @@ namespace footing::arms {
 
 inline constexpr std::size_t kArms = 2;  ///< 0 is the left one.
 
-/// What two hands' states and their past say of an arm, for a linear regression. Everything is in
-/// W and is mirrored for the right arm, so that one regression serves both. The body faces along x.
+/// Features of an arm for a linear regression, from two hands' states and their past. Everything is
+/// in W and is mirrored for the right arm, so that one regression serves both. The body faces along
+/// x.
 class ArmFeatures {
  public:
   static constexpr int kTurn = 9, kHistories = 3;
-  static constexpr int kOtherAt = kTurn + 12 + kTurn * kHistories;  ///< What the other hand says.
+  static constexpr int kOtherAt = kTurn + 12 + kTurn * kHistories;  ///< Features of the other hand.
   static constexpr int kOther = kTurn + 3;
   static constexpr int kLinear = kOtherAt + kOther;
   static constexpr int kProducts = kTurn * (kTurn + 1) / 2;
@@ -29,7 +30,7 @@ class ArmFeatures {
 
   /// The next frame of both hands.
   void Advance(const std::array<HandState, kArms>& hands, double step_s);
-  /// Of one arm, in the left arm's frame.
+  /// Features of one arm, in the left arm's frame.
   void Compute(std::size_t arm, Values& out) const;
 
  private:
@@ -50,8 +51,8 @@ inline Eigen::Vector3d MirroredWay(const Eigen::Vector3d& v) { return {v.x(), -v
 /// How an arm is held, by unit vectors in W: three angles of the shoulder (`upper`, and `hinge`
 /// about it) and one of the elbow (between `upper` and `forearm`).
 struct ArmDirections {
-  Eigen::Vector3d upper = Eigen::Vector3d::UnitY();    ///< Shoulder to elbow.
-  Eigen::Vector3d hinge = Eigen::Vector3d::UnitZ();    ///< Of the upper arm: up in the T-pose.
+  Eigen::Vector3d upper = Eigen::Vector3d::UnitY();  ///< Shoulder to elbow.
+  Eigen::Vector3d hinge = Eigen::Vector3d::UnitZ();  ///< Hinge of the upper arm: up in the T-pose.
   Eigen::Vector3d forearm = Eigen::Vector3d::UnitY();  ///< Elbow to the middle of the fist.
 };
 
@@ -60,7 +61,7 @@ struct ArmGeometry {
   int shoulder = 0, elbow = 0;
   body::Point fist;
   Eigen::Vector3d hinge_J = Eigen::Vector3d::UnitZ();  ///< In the shoulder's frame.
-  double upper_m = 0, forearm_m = 0;                   ///< Of the T-pose.
+  double upper_m = 0, forearm_m = 0;                   ///< Lengths in the T-pose.
 
   ArmGeometry(const body::Body& body, int side);
 
@@ -76,10 +77,11 @@ struct ArmGeometry {
 double ShoulderError(const ArmDirections& a, const ArmDirections& b);
 double ElbowError(const ArmDirections& a, const ArmDirections& b);
 
-/// Of ArmDirections: upper, hinge, forearm.
+/// Entries of ArmDirections: upper, hinge, forearm.
 inline constexpr int kDirections = 9;
 using Directions = Eigen::Matrix<double, kDirections, 1>;
 
+/// The three directions in one vector.
 Directions Stacked(const ArmDirections& arm);
 /// The same as unit vectors; those of a T-pose where the numbers have no direction.
 ArmDirections Of(const Directions& stacked);
@@ -88,10 +90,10 @@ ArmDirections Mirrored(const ArmDirections& arm);
 
 /// From features to how an arm is held, learned (docs/models.md), and how far off that is.
 struct ArmModel {
-  ArmFeatures::Values mean, scale;  ///< Of the features: (f - mean) scale, cut at +-4.
+  ArmFeatures::Values mean, scale;  ///< Scaling of the features: (f - mean) scale, cut at +-4.
   Eigen::MatrixXd weights;          ///< kDirections x ArmFeatures::kCount.
   Directions offset;
-  /// Of the errors on persons that were left out, in the left arm's frame.
+  /// Covariance of the errors on persons that were left out, in the left arm's frame.
   Eigen::Matrix<double, kDirections, kDirections> covariance;
 
   /// Writes the scaled features to `features`. Where nothing is known of the other hand, what it

@@ -13,7 +13,7 @@ constexpr double kLeastSd = 0.02;
 
 double Squared(double x) { return x * x; }
 
-/// Of a direction that was `rest_W` in the T-pose, turned as the device has turned.
+/// Covariance of a direction that was `rest_W` in the T-pose, turned as the device has turned.
 Eigen::Matrix3d TurnedCovariance(const HandState& state, const Eigen::Vector3d& rest_W) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d now_W = state.turn_W * rest_W;
@@ -27,7 +27,7 @@ Eigen::Matrix3d TurnedCovariance(const HandState& state, const Eigen::Vector3d& 
              (Eigen::Matrix3d::Identity() - now_W * now_W.transpose());
 }
 
-/// What the devices measure; of what none does the variance is kUnmeasuredVariance.
+/// Directions measured by the devices; where none measures, the variance is kUnmeasuredVariance.
 ArmBelief Measured(std::size_t arm, const SegmentStates& segments) {
   ArmBelief measured;
   measured.covariance *= kUnmeasuredVariance;

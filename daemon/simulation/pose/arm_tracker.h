@@ -8,7 +8,7 @@
 
 namespace footing::arms {
 
-/// What is believed of an arm's directions, in W, and with what covariance.
+/// Estimate of an arm's directions, in W, with its covariance.
 struct ArmBelief {
   Directions directions = Directions::Zero();
   Eigen::Matrix<double, kDirections, kDirections> covariance =
@@ -41,7 +41,7 @@ ArmEstimate ToEstimate(const ArmBelief& belief);
 /// its x towards the hand.
 enum class Place { kFist, kUpperArm, kForearm };
 inline constexpr std::size_t kPlaces = 3;
-/// Of each arm by Place: whether the device is there and heard.
+/// For each arm by Place: whether the device is there and heard.
 using Heard = std::array<std::array<bool, kPlaces>, kArms>;
 inline constexpr Heard kAllHeard{{{true, true, true}, {true, true, true}}};
 
@@ -66,9 +66,10 @@ class ArmTracker {
   /// How the arms are held now, `step_s` after the last call. Invalid before Align.
   const std::array<ArmEstimate, kArms>& Advance(double step_s, const Heard& heard = kAllHeard);
 
-  /// Of the last Advance; only when both fists are aligned.
+  /// Features of the last Advance; only when both fists are aligned.
   const ArmFeatures& features() const { return features_; }
   bool aligned() const { return hand(0).valid && hand(1).valid; }
+  /// Attitude of the device at that place, in W.
   const HandState& hand(std::size_t arm, Place place = Place::kFist) const {
     return devices_[arm][static_cast<std::size_t>(place)].state();
   }

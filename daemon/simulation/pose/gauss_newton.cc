@@ -196,7 +196,7 @@ namespace {
 // with a doubt of 0.5 to 2, and with 2 to 12 steps.
 constexpr double kDoubtPerRow = 1;
 constexpr int kSecondIterations = 4;
-constexpr double kMuchBetter = 0.1;  // Of the cost.
+constexpr double kMuchBetter = 0.1;  // Part of the cost before.
 
 }  // namespace
 
@@ -272,7 +272,7 @@ void GaussNewton::Start(const Eigen::VectorXd& likely_q) {
   if (!mean_known_) mean_before_ = likely_q;
   mean_known_ = true;
   q_before_ = q_;
-  // What the mean does not explain is what stays from frame to frame.
+  // The difference from the mean is what stays from frame to frame.
   q_ += likely_q - mean_before_;
   mean_before_ = likely_q;
   centre_ = (prior_ * likely_q + smooth_ * q_) / (prior_ + smooth_);

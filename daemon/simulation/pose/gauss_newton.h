@@ -23,12 +23,13 @@ struct PoseBasis {
   Eigen::VectorXd mean;     ///< A pose.
   Eigen::MatrixXd modes;    ///< A column a component; q = mean + modes a.
   Eigen::MatrixXd inverse;  ///< a = inverse (q - mean), for poses of the space.
-  Eigen::VectorXd sd;       ///< Of each coefficient.
+  Eigen::VectorXd sd;       ///< Standard deviation of each coefficient.
 
   int dof() const { return static_cast<int>(mean.size()); }
   int size() const { return static_cast<int>(sd.size()); }
 };
 
+/// Options of a basis of poses.
 struct BasisOptions {
   /// A metre of the root counts as so many radians.
   double translation_weight = 2.5;
@@ -86,9 +87,10 @@ class PoseUpdate {
   Eigen::VectorXd innovation_;
 };
 
+/// Options of the Gauss-Newton solver.
 struct GaussNewtonOptions {
   int iterations = 3;
-  int first_iterations = 30;  ///< Of the first frame, which starts at the prior's mean.
+  int first_iterations = 30;  ///< For the first frame, which starts at the prior's mean.
   /// Weight of the prior over the coefficients, and of staying near the last frame's: the term's
   /// standard deviation is that of the coefficient over the weight. Not both 0.
   double prior_weight = 1;
@@ -152,14 +154,15 @@ class GaussNewton {
   Eigen::MatrixXd whitening_;  ///< From q - mean to coefficients over their deviations.
   Eigen::VectorXd q_, q_before_, q_best_, q_last_, mean_before_;
   Eigen::VectorXd centre_;    ///< Where mean and smoothness alone would have q.
-  Eigen::VectorXd offset_q_;  ///< Of q from the centre or the mean, or a part of that.
+  Eigen::VectorXd offset_q_;  ///< Offset of q from the centre or the mean, or a part of that.
   Eigen::VectorXd whitened_;
 };
 
+/// Options of the paper's solver, a Fibonacci search along each component.
 struct FibonacciOptions {
-  int evaluations = 8;  ///< Of equation (6) a component: 1/34 of the interval is found.
+  int evaluations = 8;  ///< For equation (6), a component: 1/34 of the interval is found.
   int sweeps = 1;
-  int first_sweeps = 6;  ///< Of the first frame, each over the whole range.
+  int first_sweeps = 6;  ///< For the first frame, each over the whole range.
   /// A later frame searches so many standard deviations to each side of the last coefficient.
   double span = 0.3;
   /// No coefficient is searched further from 0, in its standard deviations: 95 of 100 poses are

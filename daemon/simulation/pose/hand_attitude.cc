@@ -24,9 +24,9 @@ constexpr double kRestFilterS = 0.5;
 constexpr double kRestTurn = DegreesToRadians(2);
 constexpr double kRestForceMps2 = 0.5;
 
-// Of the reported deviations: a consumer gyroscope's noise, 0.02 degrees/s/sqrt(Hz), and gain
-// error, 1 %; what is left of a bias that is not watched; the inclination of a filter that runs
-// freely.
+// Sources of the reported deviations: a consumer gyroscope's noise, 0.02 degrees/s/sqrt(Hz), and
+// gain error, 1 %; what is left of a bias that is not watched; the inclination of a filter that
+// runs freely.
 constexpr double kNoiseRadPerSqrtS = DegreesToRadians(0.02);
 constexpr double kGainError = 0.01;
 constexpr double kLargestGain = 0.05;
@@ -181,7 +181,7 @@ double AttitudeFilter::inclination_sd_rad() const {
 
 namespace {
 
-constexpr double kMeanS = 4;                            // Of the T-pose.
+constexpr double kMeanS = 4;                            // Longest mean over the T-pose.
 constexpr double kLeastRestS = 1;                       // Less of it shows nothing.
 constexpr double kTPoseForceMps2 = 1;                   // Less of it shows no upright.
 constexpr double kTPoseBiasSd = DegreesToRadians(0.1);  // Nobody holds the arms quite still.

@@ -42,7 +42,7 @@ struct HandReading {
   bool clipped = false;  ///< The accelerometer was at the end of its range.
 };
 
-/// What is built into the filter; the defaults are VQF's (Laidig & Seel 2023, table 2).
+/// Options of the filter; the defaults are VQF's (Laidig & Seel 2023, table 2).
 struct AttitudeOptions {
   double gravity_s = 3;        ///< Time constant of the mean force.
   double frozen_s = 3;         ///< Without correction after a clipped reading; 0: not at all.
@@ -75,7 +75,7 @@ class AttitudeFilter {
   /// From S to W: z up, heading 0 at the start.
   Eigen::Matrix3d R_WS() const { return R_WG_ * R_GS_; }
   Eigen::Vector3d bias_S_radps() const { return start_bias_S_ + errors_.head<3>(); }
-  /// Of each axis: by which part its reading is too large.
+  /// Gain error of each axis: by which part its reading is too large.
   Eigen::Vector3d gain_errors() const { return errors_.tail<3>(); }
   bool resting() const { return rest_s_ >= kRestS; }
 
@@ -86,7 +86,7 @@ class AttitudeFilter {
 
  private:
   static constexpr double kRestS = 1.5;
-  using Errors = Eigen::Matrix<double, 6, 1>;  ///< Of the gyroscope: bias, rad/s; gains.
+  using Errors = Eigen::Matrix<double, 6, 1>;  ///< Gyroscope's errors: bias, rad/s; gains.
   using Jacobian = Eigen::Matrix<double, 3, 6>;
 
   bool Rests(const HandReading& reading, double step_s);
@@ -102,9 +102,9 @@ class AttitudeFilter {
   AttitudeOptions options_;
   Eigen::Matrix3d R_GS_ = Eigen::Matrix3d::Identity();  ///< G: kept by the gyroscope alone.
   Eigen::Matrix3d R_WG_ = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d start_bias_S_ = Eigen::Vector3d::Zero();  ///< Of any size; taken off at once.
-  Errors errors_ = Errors::Zero();  ///< What is left of it, at most 2 deg/s each; the gains.
-  Eigen::Matrix<double, 6, 6> variance_ = Eigen::Matrix<double, 6, 6>::Zero();  ///< Of errors_.
+  Eigen::Vector3d start_bias_S_ = Eigen::Vector3d::Zero();  ///< Bias at start; taken off at once.
+  Errors errors_ = Errors::Zero();  ///< Rest of the bias, at most 2 deg/s each; the gains.
+  Eigen::Matrix<double, 6, 6> variance_ = Eigen::Matrix<double, 6, 6>::Zero();  ///< For errors_.
   LowPass<Eigen::Vector3d> force_G_;
   // The turn that errors_ make in W, as the mean force has seen it, and its derivative by them.
   LowPass<Eigen::Vector3d> turned_error_;

@@ -15,10 +15,10 @@ namespace {
 // Where each error begins.
 constexpr int kPlace = 0, kVelocity = 3, kTilt = 6, kHeading = 8, kTurnBias = 10, kForceBias = 13;
 
-// Of a device such as a PS Move or a Wiimote with MotionPlus: docs/hands.md has the errors.
+// Errors of a device such as a PS Move or a Wiimote with MotionPlus: docs/hands.md has them.
 constexpr double kForceNoise = 4e-5;       // m^2/s^3: 0.06 m/s^2, 100 readings a second.
 constexpr double kTurnNoise = 4e-7;        // rad^2/s: 0.006 rad/s.
-constexpr double kGainError = 0.01;        // Of every axis of both sensors.
+constexpr double kGainError = 0.01;        // Every axis of both sensors.
 constexpr double kForceBiasSdMps2 = 0.15;  // Bias, and the gain's share of gravity.
 constexpr double kTurnBiasSdRadps = 0.02;  // 1 degree/s: nobody has held it still.
 constexpr double kTurnBiasWalk = 1e-7;     // rad^2/s^3: 0.0003 rad/s after a second.
@@ -26,17 +26,17 @@ constexpr double kHeadingWalk = 1e-5;      // 1/s: gains take cosine and sine of
 // The errors of gains as white noise: a hand turns back, so that most of them cancel. This and the
 // next two are chosen by NEES on CMU 13.
 constexpr double kGainLastsS = 0.02;
-constexpr double kBiasChangesPerRad = 0.1;  // Of the gain's share of gravity, whose axes turn.
+constexpr double kBiasChangesPerRad = 0.1;  // Gain's share of gravity, whose axes turn.
 constexpr double kLeansS = 0.1;             // Gravity in an unknown direction, alike.
-// What is not felt yet: acceleration and turn change by as much as they are within 0.1 s, and those
+// Changes not felt yet: acceleration and turn change by as much as they are within 0.1 s, and those
 // of a hand at rest by these. Beyond the range of the accelerometer, 5 m/s^2 for 0.03 s.
 constexpr double kForceSdMps2 = 1, kTurnSdRadps = 0.5, kChangesInS = 0.1;
 constexpr double kClippedForce = 2 * 5 * 5 * 0.03;  // m^2/s^3.
-constexpr double kSpeedSdMps = 1;                   // Of a hand that was seen once.
-constexpr double kTimeSdS = 0.001;                  // Of an exposure against the readings.
-constexpr double kPlaceSdM = 0.00002;               // Of any observation: of a near sphere.
-constexpr double kArmSdShare = 0.02;  // Of the arm to the point: its length and direction.
-constexpr double kFastestMps = 20, kLargestHeading = 1.5;  // Of a filter that has not lost its way.
+constexpr double kSpeedSdMps = 1;                   // Speed of a hand seen once.
+constexpr double kTimeSdS = 0.001;                  // Exposure time against the readings.
+constexpr double kPlaceSdM = 0.00002;  // Floor for any observation: that of a near sphere.
+constexpr double kArmSdShare = 0.02;   // Arm to the point: its length and direction.
+constexpr double kFastestMps = 20, kLargestHeading = 1.5;  // Beyond them it has lost its way.
 constexpr double kKnownHeadingSdRad = 0.2, kKnownHeadingOff = 0.2;
 
 double Square(double x) { return x * x; }
@@ -104,7 +104,7 @@ void Filter::Advance(const arms::HandReading& from, const arms::HandReading& to,
   const Eigen::Vector3d force_G =
       0.5 * (before * (from.specific_force_S_mps2 - force_bias_S_mps2_) +
              R_GS_ * (to.specific_force_S_mps2 - force_bias_S_mps2_));
-  Rows by_errors = Rows::Zero();  // Of the acceleration.
+  Rows by_errors = Rows::Zero();  // Derivatives of a_W by the errors.
   const Eigen::Vector3d a_W =
       InWorld(force_G, by_errors) - Eigen::Vector3d(0, 0, kStandardGravityMps2);
   by_errors.middleCols<3>(kForceBias) = -HeadingMatrix() * R_GS_;

@@ -34,7 +34,7 @@ class Filter {
   /// At the first observation; with this attitude, whose tilt has this deviation, rad.
   void Start(const Observation& seen, const Eigen::Matrix3d& R_GS, double tilt_sd_rad);
 
-  /// What the readings of a step are worth.
+  /// Trust in the readings of a step.
   enum class Trust {
     kMeasured,
     kHeld,     ///< There is none yet at its end: that of its start is held.
@@ -52,9 +52,9 @@ class Filter {
   /// The heading is determined, as a unit vector.
   bool KnowsHeading() const;
 
-  const Eigen::Vector3d& p_W_m() const { return p_W_m_; }  ///< Of the device.
+  const Eigen::Vector3d& p_W_m() const { return p_W_m_; }  ///< Position of the device.
   const Eigen::Vector3d& v_W_mps() const { return v_W_mps_; }
-  /// Of G's heading in W, at most pi: of one of which nothing is known.
+  /// Standard deviation of G's heading in W; at most pi, when nothing is known of it.
   double heading_sd_rad() const;
   const Covariance& covariance() const { return covariance_; }
 

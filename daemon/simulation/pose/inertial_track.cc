@@ -13,12 +13,12 @@
 namespace footing::inertial {
 namespace {
 
-constexpr double kLatestS = 0.15;  // Of an observation, after readings of its time.
+constexpr double kLatestS = 0.15;  // Delay of an observation behind readings of its time.
 constexpr double kOtherClockS = 1;
 constexpr double kGravityS = 0.5;     // Least duration of the mean that shows what is up.
 constexpr double kGravityLastsS = 2;  // Later readings replace the earlier ones.
 constexpr double kLeastForceMps2 = 1;
-constexpr double kTiltSdRad = 0.03, kMostTiltSdRad = 0.4;  // Of a device at rest; of any.
+constexpr double kTiltSdRad = 0.03, kMostTiltSdRad = 0.4;  // Device at rest; any device.
 // Chi squared of three degrees of freedom: one in 1000 if both are right.
 constexpr double kContradiction = 16.3;
 constexpr int kMostContradictions = 5;  // One after the other: no accident.
@@ -149,7 +149,7 @@ bool Track::FollowsTheLast(const Waiting& one) const {
          (one.seen.p_W_m - last_seen_.seen.p_W_m).norm() < kStepM + kFastestHandMps * step_s;
 }
 
-/// What is seen moves like a hand and contradicts the filter: not the camera is wrong.
+/// The filter is wrong, not the camera: the observations move like a hand and contradict it.
 bool Track::IsLost() {
   return !base_.filter.IsPlausible() || (!jumped_ && contradictions_ >= kMostContradictions);
 }

@@ -21,9 +21,9 @@ class Track {
 
   struct State {
     bool valid = false;
-    Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Of the device.
+    Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Position of the device.
     Eigen::Vector3d v_W_mps = Eigen::Vector3d::Zero();
-    /// Of place and velocity.
+    /// Covariance of place and velocity.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
   };
 
@@ -71,7 +71,7 @@ class Track {
   bool FollowsTheLast(const Waiting& one) const;
   bool IsLost();
   bool Start(const Waiting& one);
-  double SpreadMps2() const;  ///< Of the force that is felt.
+  double SpreadMps2() const;  ///< Standard deviation of the felt force.
   void DropBefore(double time_s);
 
   Eigen::Vector3d p_SP_m_;

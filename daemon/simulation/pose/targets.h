@@ -13,7 +13,7 @@ namespace footing::pose {
 
 /// A point of the body that is known to be somewhere in W, or from the origin of another joint.
 struct PointTarget {
-  int joint = 0;                                    ///< Whose frame it is fixed to.
+  int joint = 0;                                    ///< Joint whose frame it is fixed to.
   Eigen::Vector3d p_J_m = Eigen::Vector3d::Zero();  ///< In that frame.
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where it should be.
   Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();   ///< Along W's axes, positive.
@@ -59,8 +59,8 @@ inline Eigen::Vector3d PlaceOf(const PointTarget& point, const body::Kinematics&
 /// of a belt (2), with one to spare.
 inline constexpr int kMaxPoints = 26;
 
-/// What one frame's pose is solved for: the terms of equation (6), each with its standard
-/// deviation. What is not valid is not asked for.
+/// Terms that one frame's pose is solved for, those of equation (6), each with its standard
+/// deviation. Terms that are not valid are left out.
 struct PoseTargets {
   std::array<PointTarget, kMaxPoints> points;
   int count = 0;
@@ -93,7 +93,7 @@ class JointLimits {
   explicit JointLimits(const body::Body& body);
 
   void Measure(const Eigen::VectorXd& q);
-  /// Of the pose measured last, in the order of the degrees of freedom.
+  /// Excesses of the pose measured last, in the order of the degrees of freedom.
   const std::vector<Excess>& excesses() const { return excesses_; }
   /// The most that a pose can have.
   int most() const { return static_cast<int>(dofs_.size()); }
@@ -155,8 +155,8 @@ class MeasuredTerms {
   Eigen::VectorXd residuals_, rate_;
   Eigen::Vector3d com_W_m_ = Eigen::Vector3d::Zero();
   std::vector<JacobianBlock> blocks_;
-  std::vector<std::vector<int>> limited_dofs_;  ///< Of each block of limits.
-  JacobianBlock single_;  ///< Of JointBlock and ComBlock, and of a joint that another is seen from.
+  std::vector<std::vector<int>> limited_dofs_;  ///< Degrees of freedom of each block of limits.
+  JacobianBlock single_;  ///< For JointBlock, ComBlock, and a joint that another is seen from.
   body::Kinematics at_;
   body::CompositeMasses workspace_;
   body::CentroidalMatrix centroidal_;

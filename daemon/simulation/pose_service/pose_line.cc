@@ -40,7 +40,7 @@ using serving::Answer;
 
 namespace {
 
-/// What the engine runs with; its subject stands in the frames.
+/// Settings that the engine runs with; its subject stands in the frames.
 std::string EffectiveConfig(const serving::Config& common, const Config& config) {
   using nlohmann::ordered_json;
   return serving::EffectiveSettings(common, "pose", config)
@@ -312,7 +312,7 @@ void Get(const Message& message, Value& value) {
   Fields(wire::In<Value, Message>{value, message}, value);
 }
 
-/// Of the joints those that are seen.
+/// Adds the joints that are seen.
 void SetJoints(const reconstruction::JointInputs& joints, v1::PoseInput& message) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const reconstruction::JointInput& joint = joints[i];

@@ -44,6 +44,7 @@ class PoseLine {
   static Result<std::unique_ptr<PoseLine>> Create(const serving::Config& common,
                                                   const Config& config, int wake_descriptor);
 
+  /// Channels that it publishes.
   static std::vector<transport::Channel> Channels();
   static std::vector<std::string> Capabilities() { return {"pose", "lease"}; }
   static std::vector<std::string> SensorChannels() {
@@ -53,11 +54,13 @@ class PoseLine {
   double frame_rate_hz() const { return kRateHz; }
 
   serving::SimulationThread<PoseRun>& thread() { return thread_; }
+  /// Channels that a new viewer needs, as of now.
   std::vector<transport::ChannelBytes> Retained() const;
   void OnTick(const v1::Tick& tick, std::int64_t now_ns) { sensors_.OnTick(tick, now_ns); }
   /// CalibrateTPose, SetSubject and the lease; anything else is answered with what there is.
   v1::CommandResult OnCommand(const transport::SessionInfo& who, const v1::Command& command);
   void OnSessionEnd(const transport::SessionInfo& who) { lease_.EndSession(who.session); }
+  /// Channels to publish for a frame of the simulation thread.
   std::vector<transport::ChannelBytes> OnFrame(const PoseFrame& frame, std::int64_t now_ns);
 
  private:

@@ -12,8 +12,8 @@
 namespace footing::pose_service {
 namespace {
 
-constexpr double kHeightMargin = 0.18;  // Of the T-pose's height of the hands.
-constexpr double kLeastSpan = 0.7;      // Of the T-pose's span.
+constexpr double kHeightMargin = 0.18;  // Part of the T-pose's height of the hands.
+constexpr double kLeastSpan = 0.7;      // Part of the T-pose's span.
 constexpr double kMostSdM = 0.1;
 
 Eigen::Vector3d FistOf(const body::Body& body, const body::Kinematics& at, int side) {

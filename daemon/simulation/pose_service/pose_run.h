@@ -79,6 +79,7 @@ class PoseRun {
 
   PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects);
 
+  /// One step, with new inputs where there are any.
   void StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame);
   void FillOnSimThread(Frame& frame) const;
   void TakenOnSimThread(Frame& frame) const { frame.applied_count = 0; }

@@ -37,7 +37,7 @@ class PoseArms {
   void Bind(std::size_t side, std::optional<std::uint32_t> device,
             arms::Place place = arms::Place::kFist);
   void Take(const v1::MotionSample& sample, std::int64_t now_ns);
-  /// What the engine says of its T-pose.
+  /// Takes in the engine's report on its T-pose.
   void Follow(bool calibrated, double calibration_progress);
   /// Puts the arms and what is wrong with them into the inputs; times go forward.
   void Report(std::int64_t now_ns, PoseInputs& inputs);
@@ -47,13 +47,13 @@ class PoseArms {
     std::optional<std::uint32_t> device;
     bool seen = false, turns = false;  ///< A sample has come; one with an angular velocity.
     std::int64_t seen_ns = 0, turned_ns = 0;
-    std::int64_t sampled_ns = 0;  ///< Of the last one with an angular velocity.
+    std::int64_t sampled_ns = 0;  ///< Time of the last one with an angular velocity.
     bool simulated = false;
   };
   void Take(const v1::MotionSample& sample, std::int64_t now_ns, std::size_t side,
             std::size_t place);
   HandTrouble TroubleOf(std::size_t side, std::size_t place, std::int64_t now_ns) const;
-  /// Of the devices that the arm has.
+  /// Trouble of the devices that the arm has.
   HandTrouble TroubleOf(std::size_t side, std::int64_t now_ns) const;
 
   std::optional<arms::ArmModel> model_;
@@ -83,7 +83,7 @@ bool IsSeenInWorld(const v1::HandSample& sample);
 /// One hand as several trackers see it: a HandTrack for each of them, fused by their covariances.
 /// Where they contradict each other the fused covariance grows with the contradiction (Birge's
 /// ratio). At most kMostTrackers at once; another one replaces the one that was heard longest ago.
-/// What the camera sees of a PS Move's sphere is joined to the Move's own readings
+/// A camera's observations of a PS Move's sphere are joined to the Move's own readings
 /// (inertial::Track) while there are any. A value.
 class TrackedHand {
  public:
@@ -102,8 +102,8 @@ class TrackedHand {
     bool simulated = false;          ///< One of its trackers is.
     std::set<std::string> trackers;  ///< Their names.
   };
-  /// Of the trackers that have seen it lately. `host_ns`: the same instant by the clock of the
-  /// samples' own times.
+  /// Position fused from the trackers that have seen it lately. `host_ns`: the same instant by the
+  /// clock of the samples' own times.
   Fused At(std::int64_t now_ns, std::int64_t host_ns = 0) const;
 
  private:
@@ -143,12 +143,15 @@ class PoseSensors {
   PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
               std::optional<arms::ArmModel> arm = std::nullopt);
 
+  /// Takes in a tick and hands the inputs over.
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
-  /// What the engine says of its T-pose, frame by frame: Wiimotes are aligned by it.
+  /// Takes in the engine's report on its T-pose, frame by frame: Wiimotes are aligned by it.
   void Follow(const PoseFrame& frame) {
     arms_.Follow(frame.t_pose.complete, frame.t_pose.progress);
   }
+  /// Asks the engine for a new T-pose.
   void Calibrate();
+  /// Number of the subject that the next inputs are for.
   void TakeSubject(std::uint64_t number);
 
   const std::string& rig() const { return followed_rig_; }
@@ -201,7 +204,7 @@ class PoseSensors {
   std::array<reconstruction::HandTrack, stream::kBodyJoints> joint_tracks_ =
       reconstruction::JointTracks();
   std::string tracker_;
-  std::string joint_tracker_;  ///< Whose joints are followed.
+  std::string joint_tracker_;  ///< Tracker whose joints are followed.
   std::int64_t joint_tracker_ns_ = 0;
   v1::SetupState setup_;  ///< As published last.
   stream::BoardLayout layout_;

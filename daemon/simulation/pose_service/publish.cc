@@ -183,7 +183,7 @@ std::string Kilograms(double mass_kg) {
 
 }  // namespace
 
-/// Of Wiimotes alone: trackers lose hands and find them all the time.
+/// Events for Wiimotes only: trackers lose hands and find them all the time.
 void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Events& events) {
   for (std::size_t side = 0; side < hand_trouble_.size(); ++side) {
     const HandTrouble now = frame.input.hand_trouble[side];

@@ -16,7 +16,7 @@
 
 namespace footing::pose_service {
 
-/// What the pose follows.
+/// Sensors that the pose follows.
 enum class PoseSource { kBoards, kInsoles };
 
 /// Why a Wiimote that is there does not measure how its arm is held.
@@ -32,7 +32,8 @@ enum class HandTrouble {
 /// Inputs of the pose engine, with where they came from. Fixed size.
 struct PoseInputs {
   reconstruction::Inputs sensors;  ///< Its time is set by the engine's own steps.
-  /// Of the boards: what `sensors` has is their newest samples. Where both are valid, these count.
+  /// Impulses of the boards, whose newest samples are in `sensors`. Where both are valid, these
+  /// count.
   std::array<board::BoardImpulse, momentum::kFeet> impulses;
   /// Cells in the shoes, where there are any. While one of them sends anything, they are followed
   /// instead of the boards.
@@ -78,22 +79,22 @@ struct TPoseStatus {
   double mass_kg = 0;  ///< As weighed; 0 before.
 };
 
-/// Of the subject's skeleton.
+/// Links of the subject's skeleton.
 struct PoseLinks {
   std::size_t count = 0;
   std::array<stream::LinkPose, kMaxLinks> pose;
   std::array<double, kMaxLinks> sd_m{};
 };
 
-/// What the simulation thread hands over at every frame of the pose engine. Fixed size: filling and
-/// moving it allocates nothing.
+/// Frame that the simulation thread hands over at every frame of the pose engine. Fixed size:
+/// filling and moving it allocates nothing.
 struct PoseFrame {
   std::uint64_t step = 0;
   double time_s = 0;
   std::uint64_t overruns = 0;
   std::uint64_t left_out = 0;  ///< Frames that were due and are not published.
   std::uint64_t subject_number = 0;
-  std::uint64_t state_hash = 0;  ///< Of the pose's coordinates, bit for bit.
+  std::uint64_t state_hash = 0;  ///< Hash of the pose's coordinates, bit for bit.
   PoseInputStatus input;
   TPoseStatus t_pose;
 
@@ -123,11 +124,12 @@ v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subje
 /// One link a joint; its size is that of a ball about the joint that the limbs end in.
 stream::Skeleton ToSkeleton(const body::Body& body);
 
-/// What a person should learn once, from one frame to the next: boards or insoles lost and back
-/// and which of them is followed, Wiimotes lost and back, a T-pose asked for and taken, the next
-/// subject, filters that were reset.
+/// Events that a person should learn once, from one frame to the next: boards or insoles lost and
+/// back and which of them is followed, Wiimotes lost and back, a T-pose asked for and taken, the
+/// next subject, filters that were reset.
 class PoseEvents {
  public:
+  /// Events since the last call's frame.
   v1::Events Between(const PoseFrame& frame, const Subject& subject, std::int64_t now_ns);
 
  private:
@@ -149,7 +151,7 @@ inline constexpr double kMassTolerance = 0.03;
 /// Why there is no measurement of the hand of that side ("left").
 std::string HandText(HandTrouble trouble, const std::string& side);
 
-/// What is wrong and what to do about it, for a person; empty when all is well.
+/// Text for a person: the problem and what to do about it; empty when all is well.
 std::string PoseNote(const PoseFrame& frame, const Subject& subject);
 
 }  // namespace footing::pose_service

@@ -34,7 +34,7 @@ class BestSolver {
   /// The next frame starts at the mean.
   void Reset();
 
-  /// Of the last frame.
+  /// Solver of the last frame.
   pose::GaussNewton& solver() { return Solver(source_); }
   PriorOfPose prior() const;
   const Features& features() const { return features_; }
@@ -43,7 +43,7 @@ class BestSolver {
   /// About which pose a solution is.
   enum class Source { kMean, kPosture, kRegression };
 
-  /// What is learned has seen both hands at all times.
+  /// The learned sources need both hands, which their training had at all times.
   Source Choose(const Measurement& then) const;
   pose::GaussNewton& Solver(Source source);
   /// Where hands that only their arms show are: where a solution without the regression has them.
@@ -63,7 +63,7 @@ class BestSolver {
   PoseRegression::Workspace workspace_;
   Eigen::VectorXd likely_q_;
   bool first_ = true;              ///< No frame since Start.
-  Source source_ = Source::kMean;  ///< Of the last frame.
+  Source source_ = Source::kMean;  ///< Source of the last frame.
   bool placed_by_arms_ = false;    ///< In the last frame.
 };
 
@@ -120,11 +120,11 @@ class BestMode {
   template <typename T>
   using Lag = Delay<T, momentum::HorizontalCom::kSlots>;
 
-  /// What was measured at the instant that is reconstructed, with what is known of it now.
+  /// Measurement of the instant that is reconstructed, with what is known of it now.
   Measurement Delayed(const Measurement& now);
   /// Without what the joints are off by in common, and without those that are implausible.
   Inputs Plausible(const Inputs& inputs) const;
-  /// What these joints show.
+  /// Points that these joints show.
   const JointPoints& PointsOf(const JointInputs& joints) const;
   void SetTargets(const Measurement& then, const Truth& truth, const Output& output);
   void CleanUp(const Measurement& then, const Truth& truth);
@@ -133,7 +133,7 @@ class BestMode {
   ModeState state_;
   SkeletonOffset skeleton_;
   HeadSeat seat_;
-  JointPoints lone_points_;  ///< Of joints outside a skeleton.
+  JointPoints lone_points_;  ///< Points of joints outside a skeleton.
   BestEstimate estimate_;
   Lag<Measurement> measured_;
   Lag<Truth> truth_;

@@ -61,12 +61,12 @@ double SwingWay(double share) { return share * share * (3 - 2 * share); }
 namespace {
 
 constexpr momentum::FootContactConfig kContact{40, 25, 2, 10};
-// Of the weight: a swinging foot may brush the ground with less.
+// Parts of the weight: a swinging foot may brush the ground with less.
 constexpr double kBearsShare = 0.22, kBearsNoMoreShare = 0.11;
-constexpr double kFrameRadps = 8;  // Of the moving frame, which is critically damped.
+constexpr double kFrameRadps = 8;  // Rate of the moving frame, which is critically damped.
 constexpr double kSettleS = 0.12;  // After which a landing's place is known as well as later.
 constexpr double kPlacedSdM = 0.03, kLandingSdM = 0.05, kSwingSdM = 0.05, kLiftedSdM = 0.12;
-constexpr double kHandsAheadM = 0.07;  // Of the hips, in the mean of a stride.
+constexpr double kHandsAheadM = 0.07;  // Hands ahead of the hips, in the mean of a stride.
 constexpr double kAsideM = 0.08;       // A walking foot from the middle.
 constexpr double kStandsS = 10;        // Since the last landing of somebody who has not stepped.
 constexpr double kHipsSdM = 0.06;      // The frame, as the centre of mass' place.
@@ -75,7 +75,7 @@ constexpr double kUprightSdM = 0.04, kStandingSdM = 0.34, kWalkingMps = 0.5;
 constexpr double kArmsHangM = 0.028;  // Lower than in the T-pose by that (momentum::Subject).
 // A foot whose cells are silent: how fast its place becomes unknown, and how far off it is at most.
 constexpr double kSilentSdMps = 0.5, kSilentSdM = 0.6;
-constexpr double kHeelShare = 0.25, kBallShare = 0.75;  // Of the sole: COP behind or ahead.
+constexpr double kHeelShare = 0.25, kBallShare = 0.75;  // Parts of the sole: COP behind or ahead.
 
 Eigen::Vector3d Up(double z) { return {0, 0, z}; }
 

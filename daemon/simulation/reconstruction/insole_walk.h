@@ -26,8 +26,8 @@ struct StepTimes {
   /// A foot bore weight, or swung, for that time. What is not a step does not count.
   void Bore(double lasted_s);
   void Swung(double lasted_s);
-  /// Of somebody who walks ahead with such steps, by the walk ratio of step length over cadence,
-  /// 0.0065 m min (Sekiya & Nagasaki 1998), which people keep at any speed.
+  /// Speed of somebody who walks ahead with such steps, by the walk ratio of step length over
+  /// cadence, 0.0065 m min (Sekiya & Nagasaki 1998), which people keep at any speed.
   double UsualSpeedMps() const;
 };
 
@@ -37,9 +37,9 @@ struct FootRise {
   double ball_m = 0;
 };
 
-/// Of a swinging foot, `share` (0 to 1) of its swing after it left the ground, in steps whose feet
-/// come to be half a step ahead of the hips and behind. Backwards (a negative half step) it is the
-/// same the other way round.
+/// Rise of a swinging foot, `share` (0 to 1) of its swing after it left the ground, in steps whose
+/// feet come to be half a step ahead of the hips and behind. Backwards (a negative half step) it is
+/// the same the other way round.
 FootRise SwingRise(double share, double half_step_m);
 
 /// Which part of the way from where it stood to where it will stand a foot has gone by then: it
@@ -58,6 +58,7 @@ struct InsoleFoot {
 /// Sum of the cells' loads; 0 when nothing is known of them or they are not finite.
 double TotalLoadN(const InsoleFoot& foot);
 
+/// Measurements of insoles and hands in one frame.
 struct InsoleInputs {
   double time_s = 0;
   std::array<InsoleFoot, momentum::kFeet> feet;
@@ -78,6 +79,7 @@ struct InsoleInputs {
 /// steps, without its momentum. A value that can be copied.
 class InsoleWalk {
  public:
+  /// UsageError for other modes than the best one, for a lag, and as Reconstruction::Create.
   static Result<InsoleWalk> Create(const body::Body& body, const Models& models,
                                    const Options& options);
 

@@ -16,10 +16,10 @@
 
 namespace footing::reconstruction {
 
-/// What one frame's hands, feet and momentum say of a pose, for a linear regression: places from
-/// the estimated centre of mass, their products, and how they differ from what they were. Lengths
-/// are parts of the height of the root in the T-pose, so that persons of all sizes are alike, and
-/// nothing depends on where they are in the world.
+/// Features of one frame's hands, feet and momentum for a linear regression of the pose: places
+/// from the estimated centre of mass, their products, and how they differ from what they were.
+/// Lengths are parts of the height of the root in the T-pose, so that persons of all sizes are
+/// alike, and nothing depends on where they are in the world.
 class Features {
  public:
   static constexpr int kHistories = 3;
@@ -62,7 +62,7 @@ class StripMatrix {
   explicit StripMatrix(const Eigen::MatrixXf& dense);
 
   Eigen::Index rows() const { return rows_; }
-  /// Of a vector of products, whole strips.
+  /// Rows of a vector of products, whole strips.
   Eigen::Index StripRows() const { return (rows_ + kStrip - 1) / kStrip * kStrip; }
   Eigen::MatrixXf Dense() const;
   /// y += matrix x; y has StripRows() rows, those beyond rows() stay.
@@ -77,14 +77,14 @@ class StripMatrix {
 /// root's height, then the angles. Where it has waves, it is linear in random cosines of the
 /// features, too (Rahimi & Recht 2007).
 struct PoseRegression {
-  Eigen::VectorXd mean, scale;  ///< Of the features: (f - mean) scale, cut at +-4.
+  Eigen::VectorXd mean, scale;  ///< Scaling of the features: (f - mean) scale, cut at +-4.
   Eigen::MatrixXd weights;      ///< dof x features.
   Eigen::VectorXd offset;       ///< dof.
   StripMatrix waves;            ///< waves x features: cos(waves f + phases).
   Eigen::VectorXf phases;
   StripMatrix wave_weights;  ///< dof x waves.
 
-  /// What Predict computes in, allocated once.
+  /// Workspace of Predict, allocated once.
   struct Workspace {
     Eigen::VectorXd scaled;
     Eigen::VectorXf single, waved, part;
@@ -101,7 +101,7 @@ struct NamedModel {
   model::Model model;
 };
 
-/// What the names of the tensors begin with that are of hands and feet alone.
+/// Prefix of the tensors for hands and feet alone.
 inline constexpr const char* kPosturePrefix = "posture.";
 
 /// The pose that some features make likely, and what is left of it: components of the regression's
@@ -113,17 +113,17 @@ struct LikelyPoses {
   bool empty() const { return regression.empty(); }
 };
 
-/// What has been learned of how people move (docs/models.md).
+/// Learned models of how people move (docs/models.md).
 struct Models {
   pose::PoseBasis basis;
-  double root_height_m = 0;  ///< Of the basis' people, in the T-pose; 0: unknown.
+  double root_height_m = 0;  ///< Root height of the basis' people, in the T-pose; 0: unknown.
   /// The pose that the features make likely, and what is left of it: components of the regression's
   /// errors, about the mean of `basis`. Where the model has them (kind "pose").
   PoseRegression regression;
   pose::PoseBasis rest;
   /// The same by hands and feet alone (WithoutLoads), where the model has it.
   LikelyPoses posture;
-  std::vector<std::string> dofs;  ///< Of the basis: the layout of the bodies that it fits.
+  std::vector<std::string> dofs;  ///< Layout of the bodies that the basis fits.
   std::string origin;             ///< File of the basis.
   /// Next C_x and C_y (section 4.2), where there are such networks.
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;

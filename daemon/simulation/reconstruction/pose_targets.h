@@ -19,7 +19,7 @@
 /// The first two steps of every mode: the T-pose, and what is estimated from the loads.
 namespace footing::reconstruction {
 
-/// What is measured of one instant: hands and arms that can be used, and the momentum.
+/// Measurements of one instant: hands and arms that can be used, and the momentum.
 struct Measurement {
   std::array<HandInput, kHands> hands;
   std::array<arms::ArmEstimate, kHands> arms;
@@ -59,15 +59,15 @@ class BestEstimate {
   Measurement Advance(const Inputs& inputs, const JointPoints& points);
   /// Weighed in the T-pose, corrected since.
   double mass_kg() const { return estimator_->mass_kg(); }
-  /// Of the last frame with both hands.
+  /// Posture of the last frame with both hands.
   const LikelyPosture& posture() const { return likely_; }
 
  private:
   /// Takes in the COM of poses of hands and feet alone: they use no load, so their errors are their
   /// own.
   void SeePosture(const JointPoints& points, Measurement& now);
-  /// What a tracked head and a belt add to hands and feet. Not for the pose about the mean of all:
-  /// the lateral filter knows how that one errs by hands and feet.
+  /// Adds the targets of a tracked head and a belt to hands and feet. Not for the pose about the
+  /// mean of all: the lateral filter knows how that one errs by hands and feet.
   void AddExtraTargets(const Measurement& now, const JointPoints& points);
 
   const SubjectModel* model_;
@@ -98,7 +98,7 @@ class PaperEstimate {
   std::optional<momentum::HorizontalNetwork> horizontal_;  ///< Where the model has networks.
 };
 
-/// What every mode has: the targets of a frame and the pose that they lead to. A value; `model`
+/// State of every mode: the targets of a frame and the pose that they lead to. A value; `model`
 /// must outlive it.
 struct ModeState {
   ModeState(const SubjectModel& subject_model, const Options& mode_options);
@@ -111,7 +111,7 @@ struct ModeState {
 
   const SubjectModel* model;
   Options options;
-  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< Of the basis' poses, W.
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< Origin of the basis' poses, W.
   pose::PoseTargets targets;
   pose::PoseTargets shown_feet;
   LegCleanUp legs;
@@ -132,7 +132,7 @@ class SolutionReport {
 
  private:
   MeanMisfit misfit_;
-  std::uint32_t resets_ = 0;  ///< Of the filters, whose contradictions end with each.
+  std::uint32_t resets_ = 0;  ///< Resets of the filters, whose contradictions end with each.
   PoseSpread spread_;
 };
 

@@ -23,6 +23,7 @@ namespace footing::reconstruction {
 /// the basis (motion::WithLandmarksOnly, body::StandardPerson).
 class Reconstruction {
  public:
+  /// UsageError when an option is out of range; InvalidData when the models do not fit the body.
   static Result<Reconstruction> Create(const body::Body& body, const Models& models,
                                        const Options& options);
 
@@ -35,7 +36,7 @@ class Reconstruction {
 
   const body::Body& body() const { return model_->body; }
   const Output& output() const { return output_; }
-  /// Of the last frame of best mode, for training; only when calibrated.
+  /// Features of the last frame of best mode, for training; only when calibrated.
   const Features& features() const { return std::get<BestMode>(mode_).features(); }
   const LikelyPosture& posture() const { return std::get<BestMode>(mode_).posture(); }
 

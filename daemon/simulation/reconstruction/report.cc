@@ -86,7 +86,7 @@ void LegCleanUp::SolveBoth(const pose::PoseTargets& shown, SolvedPose& pose) {
 
 namespace {
 
-constexpr int kSpreadsAFrame = 2;  // Of the joints and the COM, those that are computed in a frame.
+constexpr int kSpreadsAFrame = 2;  // Joints, the COM among them, that are computed in a frame.
 // Frames of the CMU clips 13_29, 13_30 and 13_31 have a misfit of 0.4, one in 60 has more than 2; a
 // walk on boards (walk_03) has 2.3. Of more than 1.5 poses are further off than they report.
 constexpr double kMisfitTimeS = 0.5, kMostMisfitAtOnce = 25;

@@ -17,6 +17,7 @@
 
 namespace footing::reconstruction {
 
+/// Times and distances of a shown foot's lock to the ground.
 struct FootLockConfig {
   double ease_s = 0.1;     ///< From where the foot was shown to where it landed (section 4.4).
   double free_s = 0.15;    ///< The estimate is followed for this time after a landing,
@@ -31,7 +32,7 @@ struct FootLockConfig {
 class FootLock {
  public:
   static constexpr std::size_t kPoints = 2;
-  using Places = std::array<Eigen::Vector3d, kPoints>;  ///< Of ankle and ball, W, m.
+  using Places = std::array<Eigen::Vector3d, kPoints>;  ///< Ankle and ball, W, m.
 
   explicit FootLock(const FootLockConfig& config = {}) : config_(config) {}
 
@@ -43,13 +44,13 @@ class FootLock {
   FootLockConfig config_;
   bool held_ = false;
   double since_s_ = 0;                                               ///< The landing.
-  Eigen::Vector2d place_m_ = Eigen::Vector2d::Zero();                ///< Of the ankle.
+  Eigen::Vector2d place_m_ = Eigen::Vector2d::Zero();                ///< Place of the ankle.
   Places from_m_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< Beside the place.
 };
 
 /// One frame. All of it is finite at all times; `valid` says whether the pose means something.
 struct Output {
-  double time_s = 0;  ///< Of the inputs; the pose is of `lag_s` before.
+  double time_s = 0;  ///< Time of the inputs; the pose is of `lag_s` before.
   bool calibrated = false;
   double calibration_progress = 0;  ///< 0 to 1.
   std::uint32_t calibration_restarts = 0;
@@ -72,7 +73,7 @@ struct Output {
   Eigen::VectorXd q;  ///< Pose of the body's skeleton; a T-pose until calibrated.
   std::vector<Eigen::Matrix3d> R_WJ;
   std::vector<Eigen::Vector3d> p_WJ_m;
-  std::vector<double> joint_sd_m;  ///< Of each joint's position, along one axis.
+  std::vector<double> joint_sd_m;  ///< Standard deviation of each joint's position, along one axis.
 };
 
 /// The fifth step: the solver's pose has the feet where they are most likely; the legs, and these
@@ -131,7 +132,7 @@ void ReportPoseHeight(const SubjectModel& model, const body::Kinematics& at, dou
 /// From the origin of the basis' poses to W.
 void MoveToWorld(const Eigen::Vector3d& origin_m, SolvedPose& pose);
 
-/// What the last solution was drawn to: a basis about `likely_q`. Borrowed.
+/// Prior of the last solution: a basis about `likely_q`. Borrowed.
 struct PriorOfPose {
   const pose::PoseBasis& basis;
   double weight;

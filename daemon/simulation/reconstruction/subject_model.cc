@@ -13,7 +13,7 @@
 namespace footing::reconstruction {
 namespace {
 
-constexpr double kHeelBehindM = 0.045;  // Of the ankle, as the soles of common/virtual/devices.
+constexpr double kHeelBehindM = 0.045;  // Behind the ankle, as the soles of common/virtual/devices.
 constexpr double kMostSpreadM = 0.6;
 
 body::Kinematics InTPose(const body::Body& body) {
@@ -146,7 +146,7 @@ pose::GaussNewtonOptions PostureSolverOptions(const Options& options) {
 
 namespace {
 
-// Of the variance, in the components that paper mode searches.
+// Share of the variance, in the components that paper mode searches.
 constexpr double kPaperVarianceShare = 0.99;
 
 /// A landmark's joint on one side and the joints below it.
@@ -279,7 +279,7 @@ constexpr double kSpeedLastsS = 0.3;
 /// m^2/s^3. With the time above, a hand's speed along an axis has a deviation of 1.7 m/s: of swings
 /// of 0.3 m at 0.3 to 1.5 Hz, measured as by a Kinect, it leaves least error for all.
 constexpr double kAcceleration = 20;
-constexpr double kSpeedSdMps = 1;  // Of a hand of which nothing is known.
+constexpr double kSpeedSdMps = 1;  // Speed of a hand of which nothing is known.
 // Root mean squares over 0.1 s of CMU 13 and 14 in place: hands 0.93 m/s, elbows 0.55, knees 0.34,
 // all others 0.22 to 0.31. Hips that sink in a squat are faster, so all have the elbows' share.
 constexpr double kJointsSpeedShare = 0.6;
@@ -343,7 +343,7 @@ std::array<HandTrack, stream::kBodyJoints> JointTracks() {
 
 namespace {
 
-constexpr int kLeastJoints = 4;  // Of a skeleton that shows more than a limb.
+constexpr int kLeastJoints = 4;  // Fewest joints of a skeleton that shows more than a limb.
 // Deviations from the pose of a moment ago, whitened by the joint's own covariance: of a joint that
 // is right 3.5 are exceeded once in 140 looks (chi squared of three), 10 never.
 constexpr double kDoubtedFrom = 3.5, kDroppedFrom = 10;

@@ -40,10 +40,10 @@ struct FootGeometry {
   double RestM() const { return shape.rest_share * shape.length_m; }
 };
 
-/// Of both feet, from the body in its T-pose.
+/// Geometry of both feet, from the body in its T-pose.
 std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body);
 
-/// Of the person on the cells, by the body in its T-pose.
+/// Subject of the momentum filters: the person on the cells, by the body in its T-pose.
 momentum::Subject SubjectOf(const body::Body& body);
 
 /// Where a foot's joints are from its estimate, by how far recorded feet were off it
@@ -53,7 +53,7 @@ struct FootSpread {
   double across = 0.02;
   double ankle_up = 0.024;
   double toe_up = 0.02;
-  double ahead = -0.015;                        ///< Of F, feet of people who move.
+  double ahead = -0.015;                        ///< Ahead of F, in people who move.
   double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat;
   double flat_up = 0.005;     ///< In the T-pose they are: its deviation of both heights,
   double leave_m = 0.3;       ///< and the hands' way out of it with which they rise (StandingRise).
@@ -79,7 +79,7 @@ struct PointInput {
   bool valid = false;
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d sd_m = Eigen::Vector3d::Constant(0.01);
-  /// Of x and y, x and z, y and z; with sd_m the whole matrix.
+  /// Covariances of x and y, x and z, y and z; with sd_m the whole matrix.
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
   bool of_skeleton = false;  ///< A hand that the tracker of the joints alone sees.
 };
@@ -87,7 +87,7 @@ using HandInput = PointInput;   ///< Middle of the fist (body::Fist).
 using JointInput = PointInput;  ///< A joint of a skeleton (body::SkeletonPoints).
 using JointInputs = std::array<JointInput, stream::kBodyJoints>;  ///< By body::IndexOf.
 
-/// What the sensors measure in one frame.
+/// Measurements of the sensors in one frame.
 struct Inputs {
   momentum::ContactLoads loads;
   std::array<HandInput, kHands> hands;
@@ -118,7 +118,7 @@ struct FootPrior {
   double ankle_sd_m = 0, toe_sd_m = 0;
 };
 
-/// What the model of a walk expects of a frame (InsoleWalk).
+/// Prior of a frame by the model of a walk (InsoleWalk).
 struct WalkPrior {
   struct Com {
     Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
@@ -128,16 +128,17 @@ struct WalkPrior {
   std::optional<Com> com;  ///< Where the hands show the place of the body.
 };
 
+/// The product's own mode, and the pose paper's.
 enum class Mode { kBest, kPaper };
 
 /// Standard deviations and weights of the best mode's terms.
 struct BestConstants {
-  double hand_sd_m = 0.008;  ///< Of the fist on the hand, beside what the input says.
+  double hand_sd_m = 0.008;  ///< Fist on the hand, beside what the input says.
   double arm_spread = 1.5;   ///< Factor on an arm's deviations: its errors persist for many frames.
-  /// Of the belt on the pelvis, about each axis, beside what the attitude says.
+  /// Standard deviation of the belt on the pelvis, about each axis, beside what the attitude says.
   double belt_sd_rad = 0.07;
   FootSpread foot;
-  double com_sd_m = 0.005;  ///< Of the masses, beside what the filters say.
+  double com_sd_m = 0.005;  ///< Error of the masses, beside what the filters say.
   /// kg m^2/s, beside what the estimate says; 0: the angular momentum is left out, since as it is
   /// estimated it helps no pose (docs/pose.md).
   double angular_sd = 0;
@@ -149,19 +150,20 @@ struct BestConstants {
   double spread = 1.4;
   double arm_joint_spread = 1.15;  ///< The same from the shoulders down: hands are measured.
   double com_spread = 1.75;        ///< The same for the height of the COM.
-  /// What the covariance of all frames leaves out of the knee and what is below it while the foot
-  /// is in the air: m along one axis, reached with this time constant.
+  /// Standard deviation that the covariance of all frames leaves out of the knee and the joints
+  /// below it while the foot is in the air: m along one axis, reached with this time constant.
   double aloft_sd_m = 0.14;
   double aloft_time_s = 0.2;
 };
 
+/// Options of a reconstruction.
 struct Options {
   Mode mode = Mode::kBest;
   double rate_hz = 120;  ///< Frames a second.
   double lag_s = 0;      ///< 0 to 0.2: poses are reported with this delay, and are better.
   bool use_momentum = true;
   bool use_angular_momentum = true;
-  /// Of the best mode: the momentum's filters take where hands and feet alone place the COM.
+  /// For the best mode: the momentum's filters take where hands and feet alone place the COM.
   bool use_posture = true;
   bool clean_up = true;
   bool use_basis = true;
@@ -171,17 +173,18 @@ struct Options {
   int lag_steps() const;
 };
 
+/// UsageError that names an option out of range.
 Result<void> CheckOptions(const Options& options);
 
-/// Of the solver over the basis of all poses, and over the errors of the regression.
+/// Options for the solver over the basis of all poses, and over the errors of the regression.
 pose::GaussNewtonOptions BasisSolverOptions(const Options& options);
 pose::GaussNewtonOptions RegressedSolverOptions(const Options& options);
-/// Of hands and feet alone.
+/// Options for the solver of hands and feet alone.
 pose::GaussNewtonOptions PostureSolverOptions(const Options& options);
 
 using JointPoints = std::array<body::Point, stream::kBodyJoints>;  ///< By body::IndexOf.
 
-/// What never changes while one person is reconstructed; the steps of a mode point into it.
+/// Constants while one person is reconstructed; the steps of a mode point into it.
 struct SubjectModel {
   body::Body body;
   Eigen::VectorXd t_pose;
@@ -196,7 +199,7 @@ struct SubjectModel {
   pose::PoseBasis basis;
   PoseRegression regression;  ///< Empty where the mode does without.
   pose::PoseBasis rest;       ///< Errors of the regression.
-  LikelyPoses posture;        ///< Of hands and feet alone; empty likewise.
+  LikelyPoses posture;        ///< Hands and feet alone; empty likewise.
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
 
   double root_height_m() const { return t_pose(2); }
@@ -212,6 +215,7 @@ Result<SubjectModel> PaperSubjectModel(const body::Body& body, const Models& mod
 Result<SubjectModel> WalkSubjectModel(const body::Body& body, const Models& models,
                                       const Options& options);
 
+/// Inverse kinematics of one leg.
 pose::LegIk LegOf(const SubjectModel& model, std::size_t foot);
 
 /// Where in W the basis has the origin of its poses: below the middle of the feet of the T-pose.
@@ -227,7 +231,7 @@ class LikelyPosture {
   /// The next frame: fists in W, left and right.
   void Advance(const std::array<Eigen::Vector3d, kHands>& hands_W_m,
                const momentum::Estimate& estimate);
-  /// Of the last frame, from `origin_m`; only where the model knows postures.
+  /// Posture of the last frame, from `origin_m`; only where the model knows postures.
   const Eigen::VectorXd& Predict(const Eigen::Vector3d& origin_m);
   const Features& features() const { return features_; }
   /// From where the features' places are.
@@ -251,7 +255,7 @@ class HandTrack {
   static constexpr double kFurthestS = 0.3;  ///< Nothing is known of a hand later than that.
 
   HandTrack() = default;
-  /// Of a point that is slower than hands are, by such a part of their speed.
+  /// Track of a point that is slower than hands are, by such a part of their speed.
   explicit HandTrack(double speed_share) : speed_share_(speed_share) {}
 
   /// The hand's place at `time_s`, which is later than the one before; after a pause or a step back
@@ -274,7 +278,7 @@ class HandTrack {
   Eigen::Vector3d covariance_m2_ = Eigen::Vector3d::Zero();  ///< Between axes, of the last place.
 };
 
-/// Of the joints of a skeleton, by body::IndexOf, which are slower than hands.
+/// Tracks of the joints of a skeleton, by body::IndexOf, which are slower than hands.
 std::array<HandTrack, stream::kBodyJoints> JointTracks();
 
 /// Joints of a tracked skeleton, such as a Kinect's (pose paper, sections 5.3 and 7.3): what of
@@ -293,7 +297,7 @@ void AddJointTargets(const JointPoints& points, const JointInputs& joints,
 /// far it is the pose that is wrong, and none is dropped for that.
 void GateJoints(const JointPoints& points, const body::Kinematics& at, JointInputs& joints);
 
-/// What all joints are off by in common, as a camera that stands not quite where it was found to
+/// Common error of all joints, as a camera that stands not quite where it was found to
 /// stand makes them. Feet and COM stand still in W, so it is learned from what the joints are off
 /// from the pose that follows all of these. Of a few joints it would be what the pose is off by.
 /// A value.
@@ -314,9 +318,9 @@ class SkeletonOffset {
 
 inline constexpr std::size_t kHeadJoint = body::IndexOf(stream::BodyJoint::kHead);
 
-/// What of the head a tracker shows that shows no skeleton: the sphere of a cap is above the head,
-/// by how much nobody measures. It is found in the half second after the T-pose, which the person
-/// still holds: boards and hands show that pose better than any other. A value.
+/// Seat of a tracker on the head where no skeleton is tracked: the sphere of a cap is above the
+/// head, by how much nobody measures. It is found in the half second after the T-pose, which the
+/// person still holds: boards and hands show that pose better than any other. A value.
 class HeadSeat {
  public:
   static constexpr double kSeconds = 0.5;

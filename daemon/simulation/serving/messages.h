@@ -16,7 +16,7 @@
 /// character.
 namespace footing::serving {
 
-/// What the frames of all engines have in common.
+/// State that the frames of all engines have in common.
 struct FrameState {
   std::uint64_t step = 0;
   double time_s = 0;
@@ -31,10 +31,12 @@ struct FrameState {
 /// A frame of one character that has neither links nor contacts yet.
 v1::CharacterFrame MakeFrame(const FrameState& state, const std::string& world,
                              const std::string& rig);
+/// An event at this time of the host clock.
 v1::Event MakeEvent(v1::Event::Kind kind, std::int64_t host_ns, const std::string& text = "");
-/// What happened to the lease, for a person.
+/// Adds the changes of the lease, as events for a person.
 void AddLeaseEvents(const std::vector<std::string>& changes, std::int64_t host_ns,
                     v1::Events& events);
+/// The message of one world's skeleton.
 v1::Skeletons MakeSkeletons(const std::string& world, const stream::Skeleton& skeleton);
 
 /// The refusal of a command for a character that there is not; 0 means the only one.

@@ -39,12 +39,12 @@ namespace footing::serving {
 struct Config {
   std::string sensor;               ///< Address of footingd; empty: the default one.
   std::vector<std::string> listen;  ///< Empty: the default one.
-  std::string rig;                  ///< Whose motion commands; empty: the first one that can.
+  std::string rig;                  ///< Rig whose motion commands; empty: the first that can.
   std::string data_folder;          ///< In place of the installed data.
   std::string metrics;              ///< Where metrics are served (MetricsEndpoint); empty: nowhere.
   transport::SessionLimits sessions;
   transport::AccessSettings access;
-  std::string version;  ///< Of the program; not a setting.
+  std::string version;  ///< Version of the program; not a setting.
 
   void Bind(config::Binder& binder);
 };
@@ -67,6 +67,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
                  }}),
         monitor_(server_, line_->frame_rate_hz(), {"footing-sim", config.version}) {}
 
+  /// Opens the sockets, the metrics and the sensor client; an error names the address.
   Result<void> Open(boost::asio::io_context& io, const Config& config) {
     auto addresses = config.listen;
     if (addresses.empty()) {
@@ -113,20 +114,24 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     WaitForFrame();
   }
 
+  /// Takes over limits and access from a changed config; returns the settings whose files changed.
   Result<std::vector<std::string>> Reload(const Config& wanted) {
     auto changed_files = wanted.access.Reapply(server_);
     if (changed_files) server_.SetLimits(wanted.sessions);
     return changed_files;
   }
 
+  /// Name of the thread that is stuck; empty: none.
   std::string Stuck() const { return line_->thread().Stuck() ? "the simulation thread" : ""; }
 
+  /// Addresses on which it listens.
   std::vector<std::string> listening_on() const {
     std::vector<std::string> addresses;
     for (std::size_t i = 0; i < listening_; ++i) addresses.push_back(server_.ListeningOn(i).Text());
     return addresses;
   }
 
+  /// Ends all sessions with this reason, then calls `done`.
   void Stop(const std::string& reason, std::function<void()> done) {
     client_->Stop();
     line_->thread().Stop();
@@ -221,7 +226,7 @@ Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
                 [serving] { return serving->Stuck(); }, serving->listening_on()};
 }
 
-/// What StartServing checks besides the config itself, without its sockets and its thread.
+/// Checks of StartServing besides the config itself, without its sockets and its thread.
 template <typename Line, typename MakeLine>
 Result<void> CheckServing(const Config& config, const MakeLine& make_line) {
   if (auto access = config.access.CheckStart(config.listen); !access) return access;
@@ -230,7 +235,8 @@ Result<void> CheckServing(const Config& config, const MakeLine& make_line) {
   return line ? Result<void>() : line.error();
 }
 
-/// What every engine says on the channel "config": program, version, its name and all settings.
+/// Settings that every engine publishes on the channel "config": program, version, its name and all
+/// settings.
 template <typename EngineConfig>
 nlohmann::ordered_json EffectiveSettings(Config common, const char* engine, EngineConfig config) {
   config::Binder binder;
@@ -288,7 +294,7 @@ class SimulationThread {
 
   exchange::Latest<Inputs>& inputs() { return inputs_; }
   exchange::BoundedQueue<Frame>& frames() { return frames_; }
-  /// Of the simulation thread once that has started.
+  /// Run of the engine; the simulation thread's once that has started.
   const Run& run() const { return run_; }
 
  private:

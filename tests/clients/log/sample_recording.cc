@@ -1,7 +1,7 @@
 #include "tests/clients/log/sample_recording.h"
 
-#include "common/recording/stream_recorder.h"
 #include "common/base/result.h"
+#include "common/recording/stream_recorder.h"
 
 namespace footing::log_client {
 namespace {

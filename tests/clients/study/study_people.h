@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
-#include "clients/study/report/trials.h"
 #include "clients/study/report/analysis.h"
+#include "clients/study/report/trials.h"
 
 /// The records of a small study.
 namespace footing::study::report {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/stream/game.h"
 #include "common/base/units.h"
+#include "common/stream/game.h"
 
 namespace footing::scene::made {
 

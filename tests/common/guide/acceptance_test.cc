@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/board/layout.h"
 #include "common/base/units.h"
+#include "common/board/layout.h"
 
 namespace footing::guide {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/guide/set_up.h"
 #include "common/base/units.h"
+#include "common/guide/set_up.h"
 
 namespace footing::guide {
 

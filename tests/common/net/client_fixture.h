@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/runtime/clock.h"
 #include "common/net/client.h"
+#include "common/runtime/clock.h"
 #include "tests/common/net/server_fixture.h"
 
 namespace footing::transport {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "common/net/known_servers.h"
 #include "common/net/client.h"
-#include "tests/common/temporary_folder.h"
+#include "common/net/known_servers.h"
 #include "tests/common/net/server_fixture.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::transport {
 

@@ -1,9 +1,9 @@
 #include <fstream>
 #include <string>
 
+#include "common/base/result.h"
 #include "common/board/layout.h"
 #include "common/recording/recording_writer.h"
-#include "common/base/result.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/wire/wire.h"
 #include "tests/offline/learning/made_take.h"

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "common/runtime/clock.h"
 #include "common/net/client.h"
 #include "common/net/socket.h"
+#include "common/runtime/clock.h"
 
 extern char** environ;
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/base/units.h"
-#include "daemon/simulation/engine/state.h"
 #include "daemon/simulation/biped/track.h"
+#include "daemon/simulation/engine/state.h"
 #include "tests/simulation/allocations.h"
 #include "tests/simulation/engine/engine_fixture.h"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/body/skeleton_points.h"
 #include "common/base/units.h"
+#include "common/body/skeleton_points.h"
 
 namespace footing::virtual_sensors {
 namespace {

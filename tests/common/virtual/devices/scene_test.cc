@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "common/body/kinematics.h"
 #include "common/base/units.h"
+#include "common/body/kinematics.h"
 #include "common/virtual/motion/leg_solver.h"
 
 namespace footing::virtual_sensors {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "common/base/units.h"
 #include "common/body/kinematics.h"
 #include "common/body/skeleton.h"
-#include "common/base/units.h"
 
 namespace footing::joint_angles {
 namespace {

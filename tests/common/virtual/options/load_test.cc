@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "common/base/units.h"
 #include "common/body/body.h"
 #include "common/body/landmarks.h"
-#include "common/base/units.h"
 #include "common/virtual/motion/bvh.h"
 
 namespace footing::motion_files {
