@@ -21,7 +21,7 @@ struct ExportedMotion {
   std::string path;
   std::string subject;  ///< Code; empty where nobody was named.
   std::uint64_t frames = 0;
-  std::uint64_t invalid_frames = 0;  ///< Of `frames`: the engine reported them as not valid.
+  std::uint64_t invalid_frames = 0;  ///< Part of `frames` reported not valid by the engine.
   double rate_hz = 0;
   double begin_s = 0;        ///< Its first frame, from the recording's first message on.
   std::string angle_errors;  ///< The file with the stated errors of this person's angles.
@@ -53,7 +53,7 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
 
 /// Forces under the feet of a reconstructed body, a table for OpenSim (.mot). Axes: x ahead, y up,
 /// z right.
-/// What carries a foot: force upwards at a point of the floor.
+/// Ground reaction on one foot: upward force, N, at a point of the floor.
 struct FootForce {
   double load_n = 0;
   Eigen::Vector3d cop_W = Eigen::Vector3d::Zero();  ///< m.

@@ -46,10 +46,10 @@ struct Stream {
   std::string source_id;  ///< The same for the same source in every recording.
   std::vector<std::string> channels;
   bool is_text = false;
-  std::string note{};  ///< What else its header says; may be empty.
+  std::string note{};  ///< Remark in the stream's header; may be empty.
 };
 
-/// What a stream's footer says.
+/// Contents of a stream's footer: first and last time, s, and sample count.
 struct Extent {
   double first_s = 0, last_s = 0;
   std::uint64_t samples = 0;

@@ -23,7 +23,7 @@ struct ReceiverOptions {
 };
 
 struct Reception {
-  nlohmann::ordered_json statistics;  ///< What --json prints: see docs/skeleton.md.
+  nlohmann::ordered_json statistics;  ///< Output of --json: see docs/skeleton.md.
   Result<void> published;             ///< No device: footingd was not there for all of `seconds`.
 };
 

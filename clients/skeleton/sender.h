@@ -30,7 +30,7 @@ struct SenderOptions {
 Result<nlohmann::ordered_json> SendClip(const std::vector<ClipFrame>& clip,
                                         const SenderOptions& options);
 
-/// What a run took, beside the tracker's counts.
+/// Resources and packets of a run, beside the tracker's counts.
 struct Cost {
   double seconds = 0;
   double cpu_s = 0;

@@ -19,11 +19,11 @@ namespace footing::skeleton {
 struct WebOptions {
   transport::Address listen;      ///< tcp, of this host only: browsers give it their webcam.
   std::filesystem::path package;  ///< The folder of npm's @mediapipe/pose.
-  std::function<void(osc::Bytes packet)> on_packet;            ///< What a page sends.
-  std::function<void(const std::string& line)> on_state = {};  ///< What a page says of itself.
+  std::function<void(osc::Bytes packet)> on_packet;            ///< OSC packet of a page.
+  std::function<void(const std::string& line)> on_state = {};  ///< State that a page reports.
 };
 
-/// What pages have reported.
+/// Counts reported by the pages.
 struct WebCounts {
   std::uint64_t pages = 0;    ///< That connected.
   std::uint64_t frames = 0;   ///< Through the pose model, of the page that reported last,
@@ -56,7 +56,7 @@ class WebServer {
 /// A file of the page, which is part of the program.
 struct PageFile {
   std::string_view name;
-  std::string_view type;  ///< Of its content, for HTTP.
+  std::string_view type;  ///< Media type for HTTP.
   std::string_view text;
 };
 
@@ -71,8 +71,8 @@ std::filesystem::path DefaultPosePackage();
 std::optional<std::filesystem::path> ModelFile(const std::filesystem::path& package,
                                                std::string_view name);
 
-/// What a browser gives as the host that it asks, "NAME:PORT", is this one. One that was led here
-/// by a name of somebody else (DNS rebinding) gives that.
+/// True when the Host header of a browser's request, "NAME:PORT", names this host. A browser that
+/// was led here by a foreign name (DNS rebinding) sends that name.
 bool IsOwnHost(std::string_view host);
 
 }  // namespace footing::skeleton

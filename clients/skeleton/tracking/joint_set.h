@@ -80,10 +80,10 @@ void FillTrunk(Skeleton& skeleton);
 /// ears.
 class JointSet {
  public:
-  /// What Add did with a name.
+  /// Outcome of Add for a name.
   enum class Taken : std::uint8_t {
     kUnknown,  ///< No name of a joint.
-    kBeside,   ///< Of a joint that the 15 do without, or that a better name has given.
+    kBeside,   ///< Names a joint outside the 15, or one that a better name has given.
     kAdded,
     kRepeated,  ///< The same name was added before: nothing is changed.
   };

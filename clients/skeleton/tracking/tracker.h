@@ -57,9 +57,9 @@ stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_n
 
 /// Where the camera is in W and where it looks.
 struct CameraPlace {
-  Eigen::Vector3d p_W_m{2.5, 0, 1};  ///< Of K's origin, above the boards' surface.
+  Eigen::Vector3d p_W_m{2.5, 0, 1};  ///< Origin of K in W, above the boards' surface.
   double yaw_rad =
-      3.141592653589793;  ///< Of its look about W's z; 0 looks along x, pi at a person.
+      3.141592653589793;  ///< Viewing direction about W's z; 0 looks along x, pi at a person.
   double pitch_rad = 0;   ///< Upwards positive.
   double roll_rad = 0;    ///< Its left side up is positive.
 };
@@ -70,7 +70,7 @@ Eigen::Isometry3d ToPose(const CameraPlace& place);
 /// A place found from a person who stands on the boards.
 struct StandingFit {
   CameraPlace place;
-  double lean_rad = 0;   ///< Of the trunk against the camera's up: its tilt, or the person's.
+  double lean_rad = 0;   ///< Angle of the trunk to the camera's up: tilt of either.
   double scatter_m = 0;  ///< Standard deviation of the middle of the feet.
 };
 
@@ -78,7 +78,7 @@ inline constexpr double kStandingS = 2;
 inline constexpr std::size_t kLeastStandingFrames = 10;  ///< However long they take.
 inline constexpr double kMostLeanRad = 0.26;             ///< 15 degrees.
 inline constexpr double kMostScatterM = 0.03;
-inline constexpr double kAnkleHeightM = 0.08;  ///< Of an ankle's centre above the sole.
+inline constexpr double kAnkleHeightM = 0.08;  ///< Height of an ankle's centre above the sole.
 
 /// The place of a camera from frames of a person who stands still on the boards, facing along W's
 /// x: left is where shoulders and hips say, the middle of the ankles is above W's origin. Pitch and
@@ -109,7 +109,8 @@ class SenderClock {
 
   std::int64_t latency_ns_;
   std::int64_t window_began_ns_ = 0;
-  std::int64_t least_ns_ = kNone, least_before_ns_ = kNone;  // Of this window, of the last one.
+  std::int64_t least_ns_ = kNone,
+               least_before_ns_ = kNone;  // Least delays of this window and the last.
 };
 
 struct TrackerOptions {
@@ -117,15 +118,16 @@ struct TrackerOptions {
   CameraPlace camera = {};
   bool stand = false;  ///< Find the camera's place from the person; nothing is published before.
   std::optional<std::int32_t> user = {};  ///< Only this person; none: who was seen first and stays.
-  std::int64_t latency_ns = 67'000'000;   ///< Of a sender that gives no time: two frames at 30 Hz.
+  std::int64_t latency_ns =
+      67'000'000;  ///< Latency of senders without time stamps: two frames, 30 Hz.
 };
 
-/// What came of one person's skeletons.
+/// Counts and last fault of one person's skeletons.
 struct PersonCounts {
   Dialect dialect = Dialect::kFooting;
   std::uint64_t skeletons = 0, joints = 0, inferred = 0;
   std::array<std::uint64_t, 5> verdicts{};  ///< By Verdict.
-  Fault fault = Fault::kNone;               ///< Of the last frame.
+  Fault fault = Fault::kNone;               ///< Fault of the last frame.
 };
 
 struct TrackerCounts {
@@ -144,15 +146,15 @@ class Tracker {
   /// 1970.
   void Take(osc::Bytes packet, std::int64_t now_ns, std::int64_t wall_ns,
             std::vector<Observation>& out);
-  /// What has waited too long for the rest of its frame.
+  /// Appends skeletons that have waited too long for the rest of their frame.
   void Flush(std::int64_t now_ns, std::int64_t wall_ns, std::vector<Observation>& out);
 
   /// Lines for a person since the last call: packets that cannot be read, a fault that came or
   /// went, the placement, a person who is wanted and not seen.
   std::vector<std::string> Messages();
 
-  /// What is wrong with a person's skeleton and what to do, also while the camera is not placed;
-  /// empty when all is well.
+  /// Fault of a person's skeleton and its remedy, also while the camera is not placed; empty when
+  /// all is well.
   std::string AdviceOf(std::int32_t user) const;
   /// Why nobody is published at all, where what arrives shows it.
   std::string Advice() const;
@@ -168,7 +170,7 @@ class Tracker {
     PersonGate gate;
     SenderClock clock;
     std::int64_t seen_ns = 0;
-    /// Of its newest skeleton.
+    /// Exposure time of the person's newest skeleton.
     std::int64_t exposed_ns = std::numeric_limits<std::int64_t>::min();
     Fault reported = Fault::kNone;
   };
