@@ -21,12 +21,12 @@ void Take(const v1::Tick& tick, Collector& collector);
 /// inclined.
 bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand);
 
-/// What a tick of footing-sim with a character reports of it.
+/// State of the character in a tick of footing-sim.
 Frame FrameOf(const v1::Tick& tick);
 
 v1::Command ToCommand(const Piece& piece);
 
-/// What a game has come to.
+/// Result of a game so far.
 struct Report {
   stream::GameState game;
   std::uint64_t slopes = 0, curves = 0, steps = 0, pits = 0;  ///< Segments laid that have one.

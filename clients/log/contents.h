@@ -81,7 +81,7 @@ class RowNotes {
     std::map<std::uint32_t, std::string> roles;
     std::vector<std::string> links;
     std::vector<std::string> contacts;
-    std::vector<double> orientation_sd_rad;  ///< Links of a reconstructed person, one each.
+    std::vector<double> orientation_sd_rad;  ///< One per link of a reconstructed person.
   };
 
   const Server& ServerAt(const std::string& topic) const;

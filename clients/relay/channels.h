@@ -12,7 +12,7 @@
 #include "common/net/session.h"
 #include "footing/v1/session.pb.h"
 
-/// What a relay must know of the channels that it hands on.
+/// Channels as a relay sees them: their kinds, and how they are thinned to a rate.
 namespace footing::relay {
 
 enum class ChannelKind {
@@ -21,7 +21,7 @@ enum class ChannelKind {
   kWhole,     ///< Everything else, such as events: none may be left out.
 };
 
-/// Of a field of v1::Tick. One that this version does not know is handed on whole.
+/// Kind of a field of v1::Tick. A field that this version does not know is relayed whole.
 ChannelKind KindOf(std::uint32_t field);
 
 /// The name of a channel; empty for a field that is none.
@@ -74,7 +74,7 @@ class Thinner {
   double rate_hz_;
   std::uint64_t begin_;  ///< Older retained channels are of no use.
   std::uint64_t last_sequence_;
-  std::map<std::uint32_t, std::string> waiting_;  ///< Of channels of samples, by field.
+  std::map<std::uint32_t, std::string> waiting_;  ///< Newest samples of each channel, by field.
   std::map<std::uint32_t, std::string> retained_;
   std::map<std::uint32_t, std::uint64_t> came_;  ///< Sequence of a retained channel's last value.
   transport::Decimator decimator_;

@@ -23,7 +23,7 @@ struct EdgeOptions {
   std::string server;  ///< As the server calls itself, such as footingd.
   NatsOptions nats;
   std::vector<transport::Address> listen;
-  double rate_hz = 30;  ///< Of each channel of samples; 0: every tick.
+  double rate_hz = 30;  ///< Rate of each channel of samples; 0: every tick.
   transport::SessionLimits sessions;
   transport::AccessSettings access;
   double silent_after_s = 3;  ///< Viewers are sent away after this long without a tick.
@@ -32,8 +32,8 @@ struct EdgeOptions {
 struct EdgeReport {
   std::uint64_t ticks = 0;  ///< Received.
   std::uint64_t missing = 0;
-  std::uint64_t left_out = 0;  ///< By the rate.
-  std::uint64_t dropped = 0;   ///< Of full queues of viewers, all together.
+  std::uint64_t left_out = 0;  ///< Ticks left out to keep the rate.
+  std::uint64_t dropped = 0;   ///< Ticks dropped at full queues, all viewers together.
   std::uint64_t accepted = 0;  ///< Connections.
   std::uint64_t sessions = 0;  ///< At present.
   bool serving = false;
@@ -55,7 +55,7 @@ class Edge {
   void Drain(const std::string& reason, std::function<void()> done);
   void Stop();
   EdgeReport report() const;
-  /// What it does or waits for: a line for a person.
+  /// Present activity or wait, as a line for a person.
   const std::string& state() const { return state_; }
 
  private:

@@ -11,7 +11,7 @@
 /// The text protocol of NATS, client's side: https://docs.nats.io/reference/nats-protocol.
 namespace footing::relay::nats {
 
-/// What a server says of itself in INFO.
+/// Properties that a server states in INFO.
 struct ServerInfo {
   std::string version;
   std::size_t max_payload = 0;  ///< It refuses a longer message; 0: not said.
@@ -71,8 +71,7 @@ class Parser {
   Announced announced_;
 };
 
-/// What a client of NATS sends.
-/// By what it shows that it may come in; all empty: by nothing.
+/// Credentials of a NATS client; all empty: none.
 struct Login {
   std::string user;
   std::string password;

@@ -44,7 +44,7 @@ RunEnd RunUntilStopped(boost::asio::io_context& io, double seconds,
 std::string MetricsText(const PublisherReport& report, const std::string& version);
 std::string MetricsText(const EdgeReport& report, const std::string& version);
 
-/// What both ways to run have in common.
+/// Options and exit code common to both subcommands.
 struct Shared {
   bool json = false;
   int exit_code = 0;

@@ -9,7 +9,7 @@
 #include "common/stream/device.h"
 #include "common/stream/setup.h"
 
-/// What the doctor knows about a host, as plain values. Nothing here was looked up: the caller did.
+/// Facts about a host that the doctor examines, as plain values. The caller looks them up.
 namespace footing::ctl::doctor {
 
 struct User {
@@ -51,7 +51,7 @@ struct KnownDevice {
 
 struct Facts {
   User user;
-  /// Of each running footingd: process number and whose it is.
+  /// Running footingd processes: process number and owner.
   std::map<int, User> daemons;
   std::optional<std::uint32_t> footing_gid;  ///< Group "footing", where there is one.
   bool user_listed_in_group = false;  ///< In the group's file, perhaps not yet in the session.

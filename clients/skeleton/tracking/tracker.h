@@ -70,7 +70,7 @@ Eigen::Isometry3d ToPose(const CameraPlace& place);
 /// A place found from a person who stands on the boards.
 struct StandingFit {
   CameraPlace place;
-  double lean_rad = 0;   ///< Angle of the trunk to the camera's up: tilt of either.
+  double lean_rad = 0;   ///< Trunk against the camera's up: the camera's tilt, or the person's.
   double scatter_m = 0;  ///< Standard deviation of the middle of the feet.
 };
 
@@ -109,8 +109,7 @@ class SenderClock {
 
   std::int64_t latency_ns_;
   std::int64_t window_began_ns_ = 0;
-  std::int64_t least_ns_ = kNone,
-               least_before_ns_ = kNone;  // Least delays of this window and the last.
+  std::int64_t least_ns_ = kNone, least_before_ns_ = kNone;  // Minimum of this and last window.
 };
 
 struct TrackerOptions {
@@ -118,8 +117,7 @@ struct TrackerOptions {
   CameraPlace camera = {};
   bool stand = false;  ///< Find the camera's place from the person; nothing is published before.
   std::optional<std::int32_t> user = {};  ///< Only this person; none: who was seen first and stays.
-  std::int64_t latency_ns =
-      67'000'000;  ///< Latency of senders without time stamps: two frames, 30 Hz.
+  std::int64_t latency_ns = 67'000'000;   ///< Latency of unstamped input: two frames, 30 Hz.
 };
 
 /// Counts and last fault of one person's skeletons.
