@@ -41,7 +41,7 @@ class FullScreen {
 
  private:
   bool full_ = false;
-  int left_ = 0, top_ = 0, width_ = 0, height_ = 0;  ///< Of the window before.
+  int left_ = 0, top_ = 0, width_ = 0, height_ = 0;  ///< Window before full screen.
 };
 
 /// A mouse that turns the view. Presses are at the place of the move before them: a slow picture

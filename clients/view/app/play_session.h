@@ -30,7 +30,7 @@ class PlaySession {
 
   std::vector<PlayedSide>& sides() { return sides_; }
   const std::vector<PlayedSide>& sides() const { return sides_; }
-  /// Of all sides.
+  /// Timeline of all sides.
   const timeline::Timeline& timeline() const { return timeline_; }
   timeline::PlayHead& head() { return head_; }
   const timeline::PlayHead& head() const { return head_; }
@@ -39,7 +39,7 @@ class PlaySession {
   timeline::SideState StateOf(const PlayedSide& side) const {
     return timeline::SideAt(side.timeline, head_.at_s);
   }
-  /// What a side shows at the head's position.
+  /// Shot of a side at the head's position.
   scene::Show::Shot ShotOf(PlayedSide& side, const scene::StageOptions& options) const;
   /// The recorder's clock of a side at the head's position.
   std::int64_t ClockOf(const PlayedSide& side) const;
@@ -67,7 +67,7 @@ Result<void> RunPlayWindow(const Options& options, PlaySession& session);
 /// Plays options.play: into the window, into pictures, or as text.
 Result<void> RunPlayback(const Options& options);
 
-/// What a person has switched on while a recording plays.
+/// View options that a person has switched while a recording plays.
 struct PlayPicture {
   render::HudOptions hud;
   bool timeline = true;

@@ -45,7 +45,7 @@ class StopSignal {
   bool asked_ = false;
 };
 
-/// What a run has seen, as one JSON object.
+/// Summary of a run, as one JSON object.
 std::string Summary(const scene::Model& model, double seconds);
 
 }  // namespace footing::view

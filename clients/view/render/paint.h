@@ -13,7 +13,7 @@ namespace footing::render {
 
 /// Letters, in pixels of the picture.
 struct Fonts {
-  ImFont* tiny = nullptr;  ///< Of axes.
+  ImFont* tiny = nullptr;  ///< Labels of axes.
   ImFont* small = nullptr;
   ImFont* text = nullptr;
   ImFont* strong = nullptr;
@@ -63,7 +63,7 @@ struct Paint {
   ImDrawList* list = nullptr;
   Fonts fonts;
   float scale = 1;
-  ImTextureID camera_picture = nullptr;  ///< Of the preview; null: there is none.
+  ImTextureID camera_picture = nullptr;  ///< Texture of the preview; null: none.
 
   /// A dark rounded panel; returns what is left inside its margins.
   Box Panel(const Box& box) const;

@@ -24,8 +24,8 @@ PanelHeight CharacterPanelHeight(bool phases);
 void DrawCharacterPanel(const Paint& paint, const Box& box, const scene::Model& model,
                         const scene::CharacterPose& pose, std::int64_t now_ns);
 
-/// What to do now, how far the rest on the mark is, and in the end the result or the refusal, at
-/// the bottom of `space`.
+/// Draws the calibration's panel at the bottom of `space`: the present instruction, the progress of
+/// the rest on the mark, and in the end the result or the refusal.
 void DrawCalibrationPanel(const Paint& paint, const scene::Calibration& calibration,
                           const Box& space);
 

@@ -58,7 +58,7 @@ class Screen {
   std::vector<World> worlds_;
   float display_scale_ = 1;
   float ui_scale_ = 1;
-  float scale_ = 0;  ///< Of the fonts; 0 before the first picture.
+  float scale_ = 0;  ///< Scale of the fonts; 0 before the first picture.
   Fonts fonts_;
   PreviewTexture preview_;
 };

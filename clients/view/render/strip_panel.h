@@ -32,7 +32,7 @@ struct Plot {
   float low = 0, high = 1;  ///< Ends of the axis, in the strips' own unit.
   double label_factor = 1;  ///< From the strips' own unit to that of the labels.
   std::vector<Curve> curves;
-  float share = 1;  ///< Of the column's height.
+  float share = 1;  ///< Share of the column's height.
 };
 
 /// Width of the labels to the left of the curves, in units.

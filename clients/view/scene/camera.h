@@ -17,8 +17,8 @@ struct Camera {
   Eigen::Vector3d eye_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d target_m = Eigen::Vector3d(1, 0, 0);
   double vertical_field_rad = 0.80;
-  double roll_rad = 0;  ///< Of the picture, clockwise positive.
-  /// What a person's turns of the view go around; nothing: the target.
+  double roll_rad = 0;  ///< Roll of the picture, clockwise positive.
+  /// Point, W, about which a person turns the view; nothing: the target.
   std::optional<Eigen::Vector3d> pivot_m;
 
   /// World to camera: x right, y up, looking along -z. Without a roll the horizon is level.
@@ -30,7 +30,7 @@ struct Camera {
 inline constexpr double kNearM = 0.1;
 inline constexpr double kFarM = 300;
 
-/// What the camera follows.
+/// Subject that the camera follows, in W.
 struct Subject {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   double heading_rad = 0;
@@ -79,8 +79,8 @@ class FrontCamera {
 
 /// How a person has turned and zoomed the view with the mouse; as it is made, not at all.
 struct Orbit {
-  double azimuth_rad = 0;    ///< Of the eye around the pivot, counter-clockwise from above.
-  double elevation_rad = 0;  ///< Of the eye, upwards.
+  double azimuth_rad = 0;    ///< Angle of the eye around the pivot, counter-clockwise from above.
+  double elevation_rad = 0;  ///< Elevation of the eye, upwards.
   double distance = 1;       ///< Factor of the eye's distance from the pivot.
 };
 
@@ -112,7 +112,7 @@ class MouseOrbit {
 /// Where a second figure stands beside the first one: on the floor, not on boards.
 inline const Eigen::Vector3d kBesideM{-0.75, -1.30, -0.053};
 
-/// What footing-camera sees, as it is shown in a corner.
+/// Picture of footing-camera as it is shown in a corner.
 struct CameraPreview {
   enum class State {
     kNone,     ///< It is not asked for.
@@ -123,7 +123,7 @@ struct CameraPreview {
   };
   State state = State::kNone;
   std::string address;
-  std::string why;  ///< Of kAbsent and kRefused.
+  std::string why;  ///< Reason for kAbsent and kRefused.
   /// The last one; null before it. Whoever draws it uses its number to see that it is another one.
   std::shared_ptr<const preview::Picture> picture;
 };

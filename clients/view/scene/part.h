@@ -35,7 +35,7 @@ enum class Shape : std::uint32_t {
   kRod,   ///< Unit radius about z, from z = 0 to 1, its top scaled by the part's taper.
 };
 
-/// What a pixel of the id picture shows; tests count them.
+/// Object that a pixel of the id picture shows; tests count the pixels.
 enum class PartId : std::uint32_t { kNothing = 0, kBird = 1, kForce = 2 };
 
 using Colour = Eigen::Vector3f;  ///< Linear red, green, blue, 0 to 1.
@@ -144,7 +144,7 @@ struct ReferencePose {
   std::int64_t received_ns = 0;  ///< On the viewer's clock, like the next.
   std::int64_t sampled_ns = 0;
   std::vector<int> parents;
-  std::vector<Eigen::Vector3d> positions_m;  ///< Of each joint, W.
+  std::vector<Eigen::Vector3d> positions_m;  ///< Position of each joint, W.
 };
 
 /// The segment that the terrain game's builder holds, as a slab that one sees through; nothing

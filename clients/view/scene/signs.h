@@ -21,7 +21,7 @@ struct Label {
   Colour colour = Colour::Ones();
 };
 
-/// What is drawn of a body's balance, besides itself.
+/// Signs of a body's balance, drawn besides the body.
 struct BodySigns {
   PartList solid;  ///< Arrows, rings, the COM: they show through the body.
   PartList clear;  ///< Discs on the ground that show what is under them.
@@ -52,7 +52,7 @@ inline constexpr double kForcePerMetreN = 600;
 
 void AddForceArrows(const CharacterPose& pose, PartList& parts);
 
-/// What one tracker said last of one hand or other joint.
+/// Last sample of one tracker for one hand or other joint.
 struct SeenHand {
   stream::HandSample newest;
   std::int64_t received_ns = 0;            ///< On the viewer's clock.

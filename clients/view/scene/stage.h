@@ -74,7 +74,7 @@ class Stage {
                         double dt_s, const StageOptions& options);
 
   ChaseCamera camera_;
-  double roll_rad_ = 0;  ///< Of the picture, as it follows a person's head.
+  double roll_rad_ = 0;  ///< Roll of the picture, which follows a person's head.
   FrontCamera front_;
   std::map<std::uint32_t, ComTrail> trails_;
   std::map<std::uint32_t, BirdMotion> motions_;
@@ -109,7 +109,7 @@ class Show {
   /// Shows the last fall again in slow motion, or ends that.
   void ToggleReplay(std::int64_t now_ns);
 
-  /// What to draw at `now_ns`, which never runs back. Frozen, the world and all that slides with
+  /// Shot to draw at `now_ns`, which never runs back. Frozen, the world and all that slides with
   /// time stand still.
   Shot At(std::int64_t now_ns, bool frozen, const StageOptions& options);
 

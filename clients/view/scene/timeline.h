@@ -9,14 +9,14 @@
 #include "common/base/result.h"
 #include "common/stream/trial.h"
 
-/// What a recording holds, by time. Positions are seconds from the timeline's zero: the recording's
-/// first tick, or where trials are compared the instant they are aligned at.
+/// Contents of a recording, by time. Positions are seconds from the timeline's zero: the
+/// recording's first tick, or where trials are compared the instant they are aligned at.
 namespace footing::timeline {
 
 /// An attempt that failed.
 struct FailureMark {
   double at_s = 0;
-  std::uint64_t number = 0;  ///< Of the server's failures, from 1; 0: unknown.
+  std::uint64_t number = 0;  ///< Number among the server's failures, from 1; 0: unknown.
   stream::FailureCause cause = stream::FailureCause::kUnspecified;
   std::string trial;  ///< Its id; empty: none.
   double trial_time_s = 0;
@@ -33,7 +33,7 @@ struct TaskMark {
 /// One trial, from when it was made ready to its end.
 struct TrialMark {
   std::string id;            ///< Empty: nobody gave it one.
-  std::uint64_t number = 0;  ///< Of the trials started, from 1; 0: the one a server begins with.
+  std::uint64_t number = 0;  ///< Number of the trial, from 1; 0: a server's initial one.
   std::string track;
   std::string task;
   double begin_s = 0;             ///< It is ready, or the recording begins.
@@ -110,7 +110,7 @@ PlayHead Advanced(PlayHead head, double passed_s);
 double Faster(double speed);
 double Slower(double speed);
 
-/// What a person can ask of playback.
+/// Playback commands of a person.
 enum class PlayAction {
   kPause,
   kBack,
@@ -183,7 +183,7 @@ enum class Alignment {
 
 /// One of two recordings to be compared.
 struct Side {
-  Timeline timeline;  ///< Of what is played, usually one trial; zero is the recording's own.
+  Timeline timeline;  ///< Part played, usually one trial; zero is the recording's own.
   /// UNIX time of the recording's zero; nothing when it does not say.
   std::optional<std::int64_t> wall_of_zero_ns;
 };

@@ -17,7 +17,7 @@
 #include "common/stream/study.h"
 #include "common/stream/user_interface.h"
 
-/// What one tick of a server brings, as plain structs. World frame W: x forward, y left, z up; SI.
+/// Contents of one tick of a server, as plain structs. World frame W: x forward, y left, z up; SI.
 namespace footing::scene {
 
 /// One character of one frame.
@@ -31,14 +31,14 @@ struct CharacterPose {
   Eigen::Vector3d com_velocity_mps = Eigen::Vector3d::Zero();
   stream::GaitState gait;  ///< Its phase stays empty: the name travels as a text of its own.
   std::string phase;
-  stream::InterfaceState interface;  ///< Of the gait engine.
+  stream::InterfaceState interface;  ///< Interface state of the gait engine.
   bool simulated_input = false;
-  std::optional<BodyState> body;            ///< Of a reconstructed person.
-  std::optional<stream::TrialState> trial;  ///< Of a character on a track.
+  std::optional<BodyState> body;            ///< Body of a reconstructed person.
+  std::optional<stream::TrialState> trial;  ///< Trial of a character on a track.
 };
 
 struct WorldFrame {
-  std::uint64_t sequence = 0;  ///< Of its tick.
+  std::uint64_t sequence = 0;  ///< Sequence number of its tick.
   std::uint64_t step = 0;
   double time_s = 0;  ///< Simulation time.
   std::uint64_t overruns = 0;
@@ -61,7 +61,7 @@ struct Note {
   NoteKind kind = NoteKind::kOther;
   std::int64_t host_ns = 0;
   std::string text;
-  stream::ResponseStages response;  ///< Of kResponse.
+  stream::ResponseStages response;  ///< Stages of a kResponse.
   std::int64_t received_ns = 0;     ///< On the viewer's clock.
 };
 
