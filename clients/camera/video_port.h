@@ -47,7 +47,7 @@ Result<std::unique_ptr<Source>> OpenPipe(boost::asio::io_context& io, const std:
 /// to the values given and read back; a camera that ignores one is reported by `alarm`.
 struct VideoSettings {
   double exposure_s = 0.004;
-  int gain = -1;  ///< Of the driver's own scale; -1 leaves it as it is.
+  int gain = -1;  ///< Gain in the driver's own scale; -1 leaves it as it is.
 };
 Result<std::unique_ptr<Source>> OpenVideo(boost::asio::io_context& io, const std::string& device,
                                           const frames::CameraFile& camera,
@@ -62,7 +62,7 @@ struct FrameOptions {
   std::string device, folder, pipe;  ///< One of them.
   VideoSettings video;
   PipeSettings pipe_settings;
-  bool repeats = false;  ///< Of a folder.
+  bool repeats = false;  ///< Plays a folder again and again.
 
   const std::string& Name() const {
     return !folder.empty() ? folder : !pipe.empty() ? pipe : device;
@@ -117,7 +117,7 @@ class LockedControls {
 std::int64_t ExposedNs(const v4l2_buffer& buffer, const frames::CameraFile& camera,
                        double exposure_s, std::int64_t now_ns);
 
-/// What every command of footing-camera takes.
+/// Options common to all commands of footing-camera.
 struct CommandLine {
   std::string camera_file;
   FrameOptions frames;

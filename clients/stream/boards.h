@@ -20,7 +20,7 @@ namespace footing::stream_client {
 struct BoardsOptions {
   StageOptions stage;
   std::string hands = "none";          ///< none, move, wiimote, straps, kinect or camera.
-  std::string camera_file, frames_to;  ///< Of hands "camera": the simulated camera, and a FIFO.
+  std::string camera_file, frames_to;  ///< With hands "camera": camera file, frame FIFO.
   bool moves = false;         ///< With hands "camera": PS Moves in the fists light the spheres.
   std::string head = "none";  ///< none, or sphere: one on a cap, as a tracker sees it.
   /// A hand that is lost for a while: its Wiimote out of reach, or not seen.
@@ -37,11 +37,12 @@ struct BoardsOptions {
 /// as rendered frames for footing-camera ("camera").
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common);
 
-/// What a Wiimote in the fist of side 0 (left) or 1 feels. A copy starts from the beginning.
+/// Readings of a Wiimote in the fist of side 0 (left) or 1 (right). A copy starts from the
+/// beginning.
 SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
                                       std::uint64_t seed);
 
-/// What a Wiimote strapped there feels.
+/// Readings of a Wiimote strapped to a segment of that arm.
 SimulatedDevice::WiimoteMotion OnSegment(std::shared_ptr<const Stage> stage, int side,
                                          virtual_sensors::ArmSegment segment, std::uint64_t seed);
 

@@ -54,9 +54,9 @@ class SetupBody {
   /// How the boards lie: their yaw in W, as in stream::BoardPose.
   void Lay(double left_yaw_rad, double right_yaw_rad) { yaw_rad_ = {left_yaw_rad, right_yaw_rad}; }
 
-  /// What the board feels that lies in this place in the beginning. Times never go back.
+  /// Corner forces of the board that lies in this place in the beginning. Times never go back.
   virtual_devices::CornerForces Board(int board, double t_s);
-  /// What the limb's remote feels, in the remote's own axes.
+  /// Specific force on the limb's remote, m/s2, in the remote's own axes.
   Eigen::Vector3d Limb(int limb, double t_s);
 
  private:
@@ -101,7 +101,7 @@ struct SetupPersonOptions {
   bool once = false;      ///< One setup only.
 };
 
-/// What a guided setup asked for.
+/// Record of the prompts of guided setups.
 struct SetupRecord {
   struct Asked {
     stream::SetupPrompt prompt;
@@ -119,7 +119,7 @@ class SetupPerson {
   SetupPerson(boost::asio::io_context& io, std::shared_ptr<SetupBody> body, std::string rig,
               std::shared_ptr<SetupRecord> record, std::function<void()> on_end);
 
-  /// What footingd publishes.
+  /// Takes a tick that footingd published.
   void See(const v1::Tick& tick);
 
  private:
@@ -133,8 +133,8 @@ class SetupPerson {
   const std::function<void()> on_end_;
   timer::Timer steps_;  ///< Until the three steps are over.
   timer::Timer over_;
-  std::uint64_t number_ = 0;  ///< Of the newest prompt.
-  std::string item_;          ///< Of the newest prompt; empty: no setup is under way.
+  std::uint64_t number_ = 0;  ///< Number of the newest prompt.
+  std::string item_;          ///< Item of the newest prompt; empty: no setup is under way.
 };
 
 /// The devices of the person and the body that moves them.
@@ -169,7 +169,7 @@ struct StageOptions {
   std::string skeleton;  ///< ASF of an AMC.
   std::optional<double> bvh_unit_m = {};
   double mass_kg = 75;
-  double height_m = 1.75;     ///< Of who performs a script; recordings have their own.
+  double height_m = 1.75;     ///< Height of the performer of a script; recordings have their own.
   bool on_boards = true;      ///< False: it may walk anywhere, and nothing is said of boards.
   bool place_boards = false;  ///< Lay the boards under the feet instead of 20 mm apart.
   double seconds = 0;         ///< A recording plays forwards and backwards for this time; 0: once.
@@ -181,7 +181,7 @@ struct Stage {
   std::vector<std::array<virtual_sensors::FootForce, virtual_sensors::kFeet>> feet;  ///< A frame.
   std::array<virtual_sensors::BoardPlace, virtual_sensors::kFeet> boards;
   double gap_m = 0.02;       ///< Between the boards' facing edges.
-  double outside_share = 0;  ///< Of loaded feet whose COP is beyond the board's sensors.
+  double outside_share = 0;  ///< Share of loaded feet with a COP beyond the board's sensors.
   bool repeats = false;      ///< Ends as it begins; goes on and on.
 
   double duration_s() const;

@@ -24,7 +24,7 @@
 
 namespace footing::stream_client {
 
-/// What a person in front of the picture sees of the character.
+/// Character as a person in front of the screen sees it, in W.
 struct RunnerSight {
   Eigen::Vector2d p_W_m = Eigen::Vector2d::Zero();
   double heading_rad = 0;
@@ -48,7 +48,7 @@ class Runner {
 
   void SeeTrack(const stream::Track& track);
   void See(double time_s, const RunnerSight& sight);
-  /// What the hands do at that time, which never runs back; at rest until there is something to
+  /// Swing of the hands at that time, which never runs back; at rest until there is something to
   /// see.
   RunnerSwing Want(double time_s);
 
@@ -88,7 +88,7 @@ class LiveRunner {
  public:
   explicit LiveRunner(std::uint64_t seed);
 
-  /// What footing-sim publishes of the character and its track.
+  /// Takes a tick of footing-sim with the character and its track.
   void See(const v1::Tick& tick);
   /// The hands at t_s since the motion began; a time before the last one gives the last ones.
   wrists::Hands At(double t_s);
@@ -119,7 +119,7 @@ class LiveUser {
            std::uint64_t seed, std::vector<users::Act> acts = {});
 
   void See(const v1::Tick& tick);
-  /// What the devices feel at t_s since the motion began; after a new connection that is 0 again.
+  /// Readings of the devices at t_s since the motion began; after a new connection that is 0 again.
   const users::Felt& At(double t_s);
 
  private:
@@ -136,7 +136,7 @@ class LiveUser {
   users::Intention wanted_;
   double seen_s_ = -1e9;
   double time_s_ = 0;
-  double before_s_ = 0;  ///< Of the connections before this one.
+  double before_s_ = 0;  ///< Duration of the connections before this one.
   double at_s_ = 0;
 };
 
