@@ -18,11 +18,11 @@ namespace footing::study::simulate {
 /// One session of a study without people, devices or waiting.
 struct SimulatedSession {
   std::string protocol_path;
-  std::string study_folder;  ///< Of this session alone; must not exist.
+  std::string study_folder;  ///< Folder of this session alone; must not exist.
   plan::Session session;
-  std::uint64_t seed = 1;        ///< Of the participant's style and answers.
+  std::uint64_t seed = 1;        ///< Seed of the participant's style and answers.
   bool real_time = false;        ///< On the host's time, as a live session: its latencies are real.
-  std::string turn_by = "head";  ///< What turns with the interface leg: head, feet or trunk.
+  std::string turn_by = "head";  ///< Turn source of the interface leg: head, feet or trunk.
 };
 
 /// Runs footingd, footing-sim, footing-stream and `footing-study run --unattended` as processes of
@@ -32,7 +32,7 @@ struct SimulatedSession {
 /// ever. Failure with what the session said last; then its files are still there.
 Result<void> Simulate(const SimulatedSession& simulated);
 
-/// What another program appends to a journal.
+/// Reader of the lines that another program appends to a journal.
 class JournalTail {
  public:
   explicit JournalTail(std::string path) : path_(std::move(path)) {}
@@ -77,7 +77,7 @@ class Child {
 struct StudyOptions {
   std::string protocol_path;
   std::string protocol_text;
-  std::string study_folder;  ///< Of simulated sessions alone.
+  std::string study_folder;  ///< Folder of simulated sessions alone.
   std::vector<plan::Session> sessions;
   std::uint64_t seed = 1;
   int jobs = 1;                  ///< Sessions at once, each on about one processor.

@@ -26,7 +26,7 @@ struct Value {
   std::string participant;
   std::string interface;
   double value = 0;
-  double exposure_min = 0;  ///< Of a count: the time behind it.
+  double exposure_min = 0;  ///< Exposure behind a count.
   bool censored = false;    ///< A time to failure without a failure: a lower bound.
 };
 
@@ -45,7 +45,7 @@ struct Measure {
   /// An interface with zeros only was not measured, so it is not tested.
   bool zeros_unmeasured = false;
 
-  /// Of an interface, in the order of the participants.
+  /// Values of an interface, in the order of the participants.
   std::vector<double> Of(const std::string& interface) const;
   std::size_t censored(const std::string& interface) const;
   bool all_zero() const;
@@ -71,8 +71,7 @@ statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& pro
 /// The same of counts whose rates are compared: the blocks have counts per minute.
 statistics::StudyTable RateTableOf(const Measure& counts, const plan::Protocol& protocol);
 
-/// What must be known of the values of a measure before its tests are believed, in sentences;
-/// empty: nothing.
+/// Caveats on the values of a measure that limit its tests, in sentences; empty: none.
 std::string NoteOn(const Measure& measure, const plan::Protocol& protocol);
 
 /// Figures as SVG that stands in an HTML page: classes take their colours from the page's style.
@@ -128,8 +127,8 @@ struct StageLatency {
 /// Whether the figure draws it: a stage, not a sum of stages.
 bool IsBar(const StageLatency& latency);
 
-/// Of the trials that count, interfaces in the order of `interfaces`, stages in theirs; interfaces
-/// without a response are left out, and so are participants who have withdrawn.
+/// Latencies of the trials that count, interfaces in the order of `interfaces`, stages in theirs;
+/// interfaces without a response are left out, and so are participants who have withdrawn.
 std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfaces,
                                          const std::vector<records::Records>& people);
 
@@ -140,9 +139,9 @@ std::string LatencyFigure(const std::vector<StageLatency>& latency);
 /// How the measures are tested, as footing-eval stats has it.
 struct TestOptions {
   statistics::Alternative alternative = statistics::Alternative::kTwoSided;
-  statistics::Ties ties = statistics::Ties::kPairwise;  ///< Of Steel's test.
-  std::optional<statistics::Method> method;             ///< Of Steel's p; without: see there.
-  std::optional<std::uint64_t> seed;  ///< Of random permutations; without: the protocol's.
+  statistics::Ties ties = statistics::Ties::kPairwise;  ///< Treatment of ties in Steel's test.
+  std::optional<statistics::Method> method;  ///< Method for Steel's p; nothing: its default.
+  std::optional<std::uint64_t> seed;  ///< Seed of random permutations; nothing: the protocol's.
 };
 
 struct Analysis {
@@ -156,7 +155,7 @@ struct Analysis {
   std::vector<Measure> measures;
   std::vector<StageLatency> latency;
   bool synthetic = false;       ///< Any part of it does not come from a person.
-  bool simulated_time = false;  ///< Of any session.
+  bool simulated_time = false;  ///< Any session ran on simulated time.
 };
 
 /// Every measure of a study with its tests against the control.

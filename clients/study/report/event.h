@@ -13,8 +13,8 @@
 #include "clients/study/plan/protocol.h"
 #include "common/base/result.h"
 
-/// What a session's journal says: one JSON object a line, in the order in which it happened. What
-/// is wrong is never changed but corrected by a further event; the state of a session is what its
+/// Events of a session's journal: one JSON object a line, in the order in which they happened. A
+/// wrong event is never changed but corrected by a further one; the state of a session is what its
 /// events add up to.
 namespace footing::study::records {
 
@@ -60,7 +60,7 @@ Result<Event> ParseLine(std::string_view line);
 
 struct JournalText {
   std::vector<Event> events;
-  std::size_t whole_bytes = 0;  ///< Of the lines read: what follows is a torn line.
+  std::size_t whole_bytes = 0;  ///< Size of the whole lines; a torn line may follow.
   std::size_t torn_bytes = 0;
 };
 
@@ -82,8 +82,8 @@ class ActiveTally {
 
  private:
   std::map<std::string, double> by_interface_;
-  std::string interface_;   ///< Of the phase that goes on.
-  double of_trials_s_ = 0;  ///< Of the trials that ended in it.
+  std::string interface_;   ///< Interface of the current phase.
+  double of_trials_s_ = 0;  ///< Duration of the trials that ended in it.
 };
 
 /// The field of a note that says after how long in motion the participant had a long rest.

@@ -17,7 +17,7 @@ std::string Short(const nlohmann::ordered_json& object, const char* key);
 std::string PText(const nlohmann::ordered_json& object, const char* key);
 /// The p of a row of independent groups; with one value in each there is nothing to test.
 std::string IndependentPText(const nlohmann::ordered_json& row);
-/// What a row of a test compares.
+/// Name of the comparison in a row of a test.
 std::string NameOfRow(const nlohmann::ordered_json& row);
 
 /// A row for each measure of an analysis: the median of each interface, in their order, with the p
@@ -32,7 +32,7 @@ std::string GroupTable(const nlohmann::ordered_json& groups);
 std::string TestTable(const nlohmann::ordered_json& test);
 /// The same of its tests within participants: permutation, Wilcoxon, blocked Dunnett.
 std::string PairedTable(const nlohmann::ordered_json& paired);
-/// What Friedman's test says, in a sentence; empty: nothing.
+/// Result of Friedman's test, in a sentence; empty: none.
 std::string FriedmanText(const nlohmann::ordered_json& paired);
 /// A ratio of failure rates as a line of text.
 std::string RateText(const nlohmann::ordered_json& row);

@@ -12,9 +12,9 @@ namespace footing::study::records {
 
 /// The outcome of a trial that lost a device: it does not count.
 inline constexpr const char* kDeviceLost = "device_lost";
-/// Of a trial that a server, the lease or the recording has ended: it does not count.
+/// The outcome of a trial that a server, the lease or the recording has ended: it does not count.
 inline constexpr const char* kBrokenOff = "broken_off";
-/// Of a trial during which the program was interrupted or killed: it does not count.
+/// The outcome of a trial during which the program was interrupted or killed: it does not count.
 inline constexpr const char* kInterrupted = "interrupted";
 
 struct Failure {
@@ -34,14 +34,14 @@ using Response = std::vector<StageTime>;
 
 /// One attempt at a trial.
 struct Trial {
-  std::string id;  ///< Of all participants no other has it.
+  std::string id;  ///< Unique among all participants.
   std::string participant;
   std::string phase;
   std::string interface;
   std::string kind;  ///< "straight" or "test_track".
   std::string track;
   std::string task;
-  std::size_t position = 0;  ///< Of the interface in the participant's order, from 1.
+  std::size_t position = 0;  ///< Place of the interface in the participant's order, from 1.
   std::size_t attempt = 0;
   std::int64_t started_wall_ns = 0;
   /// "finished", "timed_out", "stopped", kDeviceLost, kBrokenOff, kInterrupted.
@@ -68,7 +68,7 @@ struct Rating {
   std::string item;       ///< "exertion" for the exertion.
   double value = 0;
   bool synthetic = false;
-  bool at_end = false;  ///< Of the final survey.
+  bool at_end = false;  ///< Asked in the final survey.
 };
 
 struct Answer {
@@ -77,10 +77,10 @@ struct Answer {
   std::string question;
   std::string text;
   bool synthetic = false;
-  bool at_end = false;  ///< Of the final survey.
+  bool at_end = false;  ///< Asked in the final survey.
 };
 
-/// What the journal of one participant says of results. A repeated survey replaces the earlier one.
+/// Results in the journal of one participant. A repeated survey replaces the earlier one.
 struct Records {
   std::string participant;
   std::vector<std::string> interfaces;  ///< In their order.
@@ -99,7 +99,7 @@ bool EndedInOrder(const std::string& outcome);
 
 Records Collect(const std::vector<Event>& events);
 
-/// Of the attempt with that id, in the order in which they happened.
+/// Failures of the attempt with that id, in the order in which they happened.
 std::vector<Failure> FailuresOf(const Records& records, const std::string& trial);
 /// The newest attempt that has a failure of that number; null: none.
 const Trial* WithFailure(const Records& records, std::uint64_t number);

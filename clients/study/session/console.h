@@ -51,7 +51,7 @@ class Console {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What an interrupted session ends with: it can go on later.
+/// Error of an interrupted session, which can go on later.
 Error Interrupted();
 
 }  // namespace footing::study

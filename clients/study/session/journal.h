@@ -45,7 +45,7 @@ class Journal {
   int descriptor_ = -1;
   std::vector<records::Event> events_;
   std::size_t torn_bytes_ = 0;
-  std::size_t whole_bytes_ = 0;  ///< Of all lines that are on the disk.
+  std::size_t whole_bytes_ = 0;  ///< Size of all lines on the disk.
   Result<void> refused_;
 };
 

@@ -43,7 +43,7 @@ class SessionRun {
   Result<std::string> Attempt(const plan::Phase& phase);
   /// After an attended attempt: undoes failures as asked; true when the trial is to be repeated.
   Result<bool> AskToRepeat(const plan::Phase& phase, const std::string& outcome);
-  /// Of the attempt of a phase that counts.
+  /// Undoes a failure of the attempt that counts for a phase.
   Result<void> Undo(const plan::Phase& phase, std::uint64_t failure);
   /// The participant's own ranges, until they are measured or the experimenter goes on without.
   Result<void> MeasureRanges(const plan::Phase& phase);
@@ -78,7 +78,7 @@ class SessionRun {
   std::set<std::string> warned_;
   stream::StudyState shown_;
   std::unique_ptr<Servers> servers_;
-  std::unique_ptr<TrialEvents> events_;  ///< Of the newest attempt, until it is settled.
+  std::unique_ptr<TrialEvents> events_;  ///< Events of the newest attempt, until it is settled.
 };
 
 /// Runs or resumes the session of a participant: takes the study's lock, checks the disk, opens the

@@ -54,12 +54,12 @@ class HeldLease : public std::enable_shared_from_this<HeldLease> {
   std::string refusal_;
 };
 
-/// What a session wants of a server.
+/// Options of a session's connection to a server.
 struct ServerLinkOptions {
   std::string server;  ///< "footingd" or "footing-sim".
   transport::Address address;
   std::vector<std::string> channels;
-  std::string holder;  ///< Of the server's lease.
+  std::string holder;  ///< Holder of the server's lease.
 };
 
 struct ServerLinkHandlers {

@@ -33,9 +33,9 @@ class ActiveTime {
   double seconds_ = 0;
 };
 
-/// What a session needs of a frame: of its first character.
+/// State of a frame's first character, as far as a session needs it.
 struct SimulationFrame {
-  std::int64_t host_ns = 0;  ///< Of its tick, on the clock of footing-sim.
+  std::int64_t host_ns = 0;  ///< Time of its tick on the clock of footing-sim.
   stream::TrialState trial;  ///< Without an id before the first trial.
   stream::Gait commanded_gait = stream::Gait::kUnspecified;
   stream::Gait gait = stream::Gait::kUnspecified;  ///< The character's own.
@@ -49,7 +49,7 @@ class Servers {
   struct Options {
     transport::Address sensor;
     transport::Address simulation;
-    std::string holder;  ///< Of both leases: who leads the session, for others.
+    std::string holder;  ///< Holder of both leases: who leads the session, for others.
   };
 
   /// Takes the leases of both, which are released in the destructor. NoDevice when one of them is
@@ -67,8 +67,8 @@ class Servers {
   const stream::Track& track() const;
   /// Both connections stand, and the leases are held, but for a footingd that others may use.
   bool live() const;
-  /// What goes on with them cannot go on. A connection that is back within seconds breaks nothing:
-  /// its ticks come after all.
+  /// True once an activity with the servers cannot go on. A connection that is back within seconds
+  /// breaks nothing: its ticks come after all.
   bool broken() const;
   /// Times that a connection was down.
   std::uint64_t breaks() const;

@@ -23,7 +23,7 @@ struct SessionOptions {
   std::string study_folder;
   std::string protocol_text;
   bool unattended = false;        ///< Nobody is asked and nothing waits; all is marked synthetic.
-  std::uint64_t answer_seed = 1;  ///< Of unattended answers.
+  std::uint64_t answer_seed = 1;  ///< Seed of unattended answers.
   std::map<std::string, std::string> tables;  ///< Texts of the protocol's mapping tables.
   transport::Address sensor;
   transport::Address simulation;
@@ -31,7 +31,7 @@ struct SessionOptions {
   std::string version;
 };
 
-/// What every part of a running session works with.
+/// Context shared by all parts of a running session.
 struct SessionContext {
   const SessionOptions& options;
   const plan::Protocol& protocol;

@@ -28,7 +28,7 @@ namespace footing::study {
 /// (section 1), since the character itself cannot answer at once.
 class Anticipation {
  public:
-  /// What a frame shows of a task.
+  /// State of a task in one frame.
   struct Sight {
     std::int64_t host_ns = 0;
     double to_mark_m = 0;  ///< Left to the line; negative behind it.
@@ -66,7 +66,8 @@ class TrialTracker {
   bool finished() const { return state_.progress.phase == stream::TrialPhase::kFinished; }
   /// Finished, stopped, or another trial has taken its place.
   bool over() const;
-  /// Of a trial that ends now: "finished" if the character reached the finish line, else `reason`.
+  /// Outcome of a trial that ends now: "finished" if the character reached the finish line, else
+  /// `reason`.
   std::string Outcome(const std::string& reason) const;
 
  private:
@@ -75,7 +76,7 @@ class TrialTracker {
   bool replaced_ = false;
 };
 
-/// What footing-sim publishes during a trial: failures, corrections and responses go into the
+/// Records a trial as footing-sim publishes it: failures, corrections and responses go into the
 /// journal as they come, the rest adds up to the figures of the trial's end.
 class TrialEvents {
  public:
