@@ -79,6 +79,7 @@ class BlinkCalibration {
   std::string message_;
 };
 
+/// Options of a blink calibration of the controllers' spheres.
 struct CalibrateOptions {
   frames::CameraFile camera;  ///< Its spheres are replaced; their radii stay.
   FrameOptions frames;

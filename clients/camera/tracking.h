@@ -14,6 +14,7 @@
 
 namespace footing::camera {
 
+/// Options of a tracking run.
 struct TrackingOptions {
   frames::CameraFile camera;
   std::string camera_path;  ///< A new calibration is taken from there while tracking; may be empty.

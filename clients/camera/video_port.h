@@ -136,6 +136,7 @@ void TakeExposure(const CommandLine& line, frames::CameraFile& camera);
 void AddCalibrateCommand(CLI::App& app, int& exit_code);
 void AddLensCommand(CLI::App& app, int& exit_code);
 
+/// Options of a lens calibration.
 struct LensOptions {
   frames::CameraFile camera;  ///< Its size and format are those of the frames.
   FrameOptions frames;
@@ -143,6 +144,7 @@ struct LensOptions {
   double seconds = 300;  ///< After that the views so far are used.
 };
 
+/// Result of a lens calibration.
 struct LensReport {
   lens_calibration::LensFit fit;
   std::size_t frames = 0, views = 0;

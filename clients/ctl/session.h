@@ -17,6 +17,7 @@
 
 namespace footing::ctl {
 
+/// Options of a session with footingd.
 struct SessionOptions {
   transport::Address address;
   std::vector<std::string> channels = {"status", "setup"};  ///< "motion", "boards", ... as needed.

@@ -55,6 +55,7 @@ struct Recount {
 /// InvalidData when the recording has no game.
 Result<Recount> RecountGame(const recording::RecordedSession& session);
 
+/// Options of a terrain game that is led by this program.
 struct HostOptions {
   GameOptions game;
   transport::Address sensor;      ///< footingd: the builder's device.

@@ -44,6 +44,7 @@ Result<RecalibrateReport> Recalibrate(const std::string& input, const std::strin
                                       const std::string& tracker, const Eigen::Isometry3d& X_WC,
                                       const std::string& library, bool replace);
 
+/// Options of a recording.
 struct RecordOptions {
   std::vector<transport::Address> addresses;
   std::string out;
@@ -54,6 +55,7 @@ struct RecordOptions {
   std::string version;
 };
 
+/// Counts of a finished recording.
 struct RecordReport {
   std::uint64_t messages = 0;
   std::uint64_t ticks = 0;

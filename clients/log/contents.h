@@ -21,6 +21,7 @@
 
 namespace footing::log_client {
 
+/// One exported table.
 struct ExportedFile {
   std::string topic;
   std::string path;
@@ -136,6 +137,7 @@ class Tables {
   Result<void> first_failure_;
 };
 
+/// Options of an export in the form of BIDS-motion.
 struct BidsOptions {
   std::string subject;  ///< Letters and digits; empty: "01".
   std::string task;     ///< Letters and digits; empty: those of the recording's name.
@@ -151,6 +153,7 @@ struct ExportedTable {
   std::size_t samples = 0;
 };
 
+/// Result of an export in the form of BIDS-motion.
 struct ExportedBids {
   std::vector<ExportedTable> tables;
   std::size_t events = 0;
@@ -164,6 +167,7 @@ struct ExportedBids {
 Result<ExportedBids> ExportBids(const std::string& recording, const std::string& folder,
                                 const BidsOptions& options);
 
+/// One topic of a recording; times in ns on the recorder's clock.
 struct Topic {
   std::string name;
   std::string schema;
@@ -175,6 +179,7 @@ struct Topic {
   double RateHz() const;
 };
 
+/// One attachment of a recording, without its bytes.
 struct AttachmentNote {
   std::string name;
   std::string media_type;

@@ -31,6 +31,7 @@ struct ExportedMotion {
 /// They are not seen in a frame that is not `valid`.
 motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector<bool>& valid);
 
+/// File format of an exported body.
 enum class BodyFormat {
   kBvh,  ///< Skeleton and rotations.
   kTrc,  ///< Places of the joints.

@@ -18,6 +18,7 @@ struct ExportedStream {
   std::uint64_t samples = 0;
 };
 
+/// Result of an export to XDF.
 struct ExportedXdf {
   std::string path;
   std::vector<ExportedStream> streams;

@@ -15,6 +15,7 @@
 /// Channels as a relay sees them: their kinds, and how they are thinned to a rate.
 namespace footing::relay {
 
+/// How a channel is relayed at a reduced rate.
 enum class ChannelKind {
   kRetained,  ///< A state: its last value is kept for those who come later.
   kSampled,   ///< Samples or poses: a newer one takes an older one's place.

@@ -18,6 +18,7 @@
 
 namespace footing::relay {
 
+/// Options of an edge relay.
 struct EdgeOptions {
   std::string site;
   std::string server;  ///< As the server calls itself, such as footingd.
@@ -29,6 +30,7 @@ struct EdgeOptions {
   double silent_after_s = 3;  ///< Viewers are sent away after this long without a tick.
 };
 
+/// State and counts of an edge relay.
 struct EdgeReport {
   std::uint64_t ticks = 0;  ///< Received.
   std::uint64_t missing = 0;

@@ -14,6 +14,7 @@
 
 namespace footing::relay {
 
+/// Options of a connection to a NATS server.
 struct NatsOptions {
   transport::Address address;
   std::string client_name;
@@ -24,6 +25,7 @@ struct NatsOptions {
   double ping_interval_s = 1, dead_after_s = 3.5;  ///< A link on which nothing comes is dropped.
 };
 
+/// Callbacks of a connection to a NATS server.
 struct NatsLinkHandlers {
   /// The server took us in; subscriptions are made already.
   std::function<void()> on_up;
@@ -58,6 +60,7 @@ class NatsLink {
   std::shared_ptr<Implementation> implementation_;
 };
 
+/// Options of a connection to an MQTT broker.
 struct MqttOptions {
   std::string host;
   int port = 1883;
@@ -67,6 +70,7 @@ struct MqttOptions {
   int max_in_flight = 1024;  ///< Messages that the library may hold; further ones are dropped.
 };
 
+/// Callbacks of a connection to an MQTT broker.
 struct MqttLinkHandlers {
   std::function<void()> on_up;
   std::function<void(const std::string& why)> on_down;

@@ -28,6 +28,7 @@ struct Message {
   bool no_responders = false;  ///< In answer to a request: nobody listens on its subject.
 };
 
+/// Callbacks for the messages of a server, one for each verb.
 struct Handlers {
   std::function<void(const ServerInfo&)> on_info;
   std::function<void(const Message&)> on_message;

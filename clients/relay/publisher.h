@@ -66,6 +66,7 @@ class Source {
   transport::Client client_;
 };
 
+/// Options of a publisher.
 struct PublisherOptions {
   std::string site;
   std::vector<transport::Address> servers;
@@ -75,6 +76,7 @@ struct PublisherOptions {
   double mqtt_rate_hz = 20;  ///< Rate of each channel of samples; 0: every tick.
 };
 
+/// State and counts of a publisher.
 struct PublisherReport {
   struct SourceState {
     std::string address;

@@ -15,6 +15,7 @@
 
 namespace footing::skeleton {
 
+/// Options of a sender that plays a clip.
 struct SenderOptions {
   boost::asio::ip::udp::endpoint to;
   Dialect dialect = Dialect::kFooting;

@@ -16,6 +16,7 @@
 
 namespace footing::skeleton {
 
+/// Options of the server of the page with the pose model.
 struct WebOptions {
   transport::Address listen;      ///< tcp, of this host only: browsers give it their webcam.
   std::filesystem::path package;  ///< The folder of npm's @mediapipe/pose.

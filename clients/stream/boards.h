@@ -17,6 +17,7 @@
 
 namespace footing::stream_client {
 
+/// Options of a simulated person on boards.
 struct BoardsOptions {
   StageOptions stage;
   std::string hands = "none";          ///< none, move, wiimote, straps, kinect or camera.
@@ -52,6 +53,7 @@ struct InsoleErrors {
   double gain_spread = 0;  ///< Standard deviation of each cell's gain.
 };
 
+/// Options of a simulated person with insoles.
 struct InsolesOptions {
   StageOptions stage;
   std::string hands = "none";  ///< none or move.

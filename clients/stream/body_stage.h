@@ -144,6 +144,7 @@ struct SetupPersonPlan {
 };
 Result<SetupPersonPlan> PlanSetupPerson(const SetupPersonOptions& options, const Common& common);
 
+/// Options of a simulated person who follows a guided setup.
 struct RehearseOptions {
   SetupPersonOptions person;
   std::string sensor;  ///< Address of footingd, whose setup is followed; empty: the default.

@@ -159,6 +159,7 @@ struct LiveUserOptions {
 Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& common,
                                   std::uint64_t style_seed);
 
+/// Options of a synthetic user of one interface.
 struct UserOptions {
   std::string script = "demo";
   std::string interface = "wrist";
@@ -175,6 +176,7 @@ struct UserOptions {
 /// The subcommand user and its flags. `options` must outlive the parsing.
 CLI::App* AddUserCommand(CLI::App& app, UserOptions& options);
 
+/// Options of the connection of simulated devices to footingd.
 struct DialerOptions {
   transport::Address to;
   double rate_scale = 1;  ///< The devices' clocks run this much faster than nominal.

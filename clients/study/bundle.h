@@ -10,6 +10,7 @@
 
 namespace footing::study::bundle {
 
+/// Options of a bundle of a study for publication.
 struct BundleOptions {
   std::string study_name;
   std::string study_folder;  ///< Has a folder for each participant.
@@ -18,6 +19,7 @@ struct BundleOptions {
   std::string version;
 };
 
+/// Contents of a written bundle.
 struct BundleReport {
   std::size_t participants = 0;
   std::size_t trials = 0;            ///< With motion files.

@@ -74,6 +74,7 @@ class Child {
   std::optional<int> exit_code_;
 };
 
+/// Options of a simulated study of several sessions.
 struct StudyOptions {
   std::string protocol_path;
   std::string protocol_text;

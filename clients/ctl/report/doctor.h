@@ -9,10 +9,12 @@
 
 namespace footing::ctl::doctor {
 
+/// Weight of a finding, heaviest first.
 enum class Severity { kError, kWarning, kNote };
 
 const char* Name(Severity severity);
 
+/// One problem that the doctor found, and its remedy.
 struct Finding {
   std::string id;  ///< Stable: "node_without_permission".
   Severity severity = Severity::kNote;

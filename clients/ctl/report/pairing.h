@@ -9,17 +9,20 @@
 /// in.
 namespace footing::ctl::pairing {
 
+/// Device that is to be paired.
 enum class Kind { kWiimote, kBoard, kMove };
 
 std::optional<Kind> KindNamed(const std::string& name);
 const char* Name(Kind kind);
 
+/// Bluetooth of the host, as far as pairing depends on it.
 struct Host {
   std::string adapter;        ///< "hci0"; empty when there is none.
   std::string bluez_version;  ///< "5.66"; empty when bluetoothctl is not there.
   bool may_fail = false;      ///< Version known to fail to pair Nintendo's devices.
 };
 
+/// One step of a pairing.
 struct Step {
   std::string say;       ///< Instruction or remark for the person.
   std::string run;       ///< Input for bluetoothctl or a shell; empty when there is none.

@@ -12,6 +12,7 @@
 /// Facts about a host that the doctor examines, as plain values. The caller looks them up.
 namespace footing::ctl::doctor {
 
+/// A user of the host, with their groups.
 struct User {
   std::string name;
   std::uint32_t uid = 0;
@@ -31,6 +32,7 @@ struct HidDevice {
   std::uint32_t node_mode = 0;  ///< Permission bits.
 };
 
+/// A Bluetooth adapter.
 struct Adapter {
   std::string name;  ///< "hci0".
   bool blocked_soft = false;
@@ -49,6 +51,7 @@ struct KnownDevice {
   bool connected = false;
 };
 
+/// All facts that the doctor's checks read.
 struct Facts {
   User user;
   /// Running footingd processes: process number and owner.

@@ -130,6 +130,7 @@ class Collector {
   std::map<std::string, RoundFacts> facts_;  ///< By id of the trial.
 };
 
+/// Options of a terrain game. The players change parts after every round.
 struct GameOptions {
   std::string host = "footing-game";
   std::string id = "game";                           ///< Prefix of the trials' ids.

@@ -19,6 +19,7 @@
 /// Virtual Motion Capture protocol from its specification.
 namespace footing::skeleton {
 
+/// Dialect of a sender, with the addresses and type tags of its messages.
 enum class Dialect : std::uint8_t {
   kSensebloom,  ///< /joint ,sifff
   kQuartz,      ///< /joint/NAME/USER ,fff

@@ -10,6 +10,7 @@
 
 namespace footing::skeleton {
 
+/// A bone between two joints.
 struct Bone {
   Joint near;
   Joint far;  ///< The one farther from the trunk.

@@ -112,6 +112,7 @@ class SenderClock {
   std::int64_t least_ns_ = kNone, least_before_ns_ = kNone;  // Minimum of this and last window.
 };
 
+/// Options of a tracker.
 struct TrackerOptions {
   DialectOptions dialect = {};
   CameraPlace camera = {};
@@ -128,6 +129,7 @@ struct PersonCounts {
   Fault fault = Fault::kNone;               ///< Fault of the last frame.
 };
 
+/// Counts of a tracker since its start.
 struct TrackerCounts {
   std::uint64_t packets = 0, bytes = 0, rejected_packets = 0, skeletons = 0;
   std::uint64_t overtaken = 0;  ///< Skeletons that came after a newer one of their person.

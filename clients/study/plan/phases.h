@@ -13,6 +13,7 @@
 
 namespace footing::study::plan {
 
+/// Kinds of the phases of a session.
 enum class PhaseKind {
   kConsent,
   kDeviceCheck,

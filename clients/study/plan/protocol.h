@@ -12,6 +12,7 @@
 
 namespace footing::study::plan {
 
+/// How the orders of the interfaces are drawn.
 enum class Order {
   kWilliams,  ///< Balanced: see WilliamsOrders.
   kRandom,    ///< An independent random order for each participant.
@@ -142,6 +143,7 @@ class Reader {
   std::optional<Error> fault_;
 };
 
+/// Scale on which a survey's item is answered.
 enum class SurveyScale {
   kRating,    ///< 1 to 5.
   kExertion,  ///< 0 to 10.

@@ -22,6 +22,7 @@ inline constexpr std::array kSections{Section::kControl, Section::kFailures, Sec
                                       Section::kSurvey};
 const char* Title(Section section);
 
+/// Value of a measure for one participant and interface.
 struct Value {
   std::string participant;
   std::string interface;
@@ -144,6 +145,7 @@ struct TestOptions {
   std::optional<std::uint64_t> seed;  ///< Seed of random permutations; nothing: the protocol's.
 };
 
+/// Result of Analyze(): the report as JSON, and the values behind it.
 struct Analysis {
   /// {name, control, participants, withdrawn, unfinished, synthetic, simulated_time, tests:
   /// {alternative, ties, method, seed}, measures: [{id, title, groups: [{interface, n, mean,

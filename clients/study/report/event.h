@@ -18,6 +18,7 @@
 /// events add up to.
 namespace footing::study::records {
 
+/// Kinds of a journal's events.
 enum class EventKind {
   kSessionStarted,
   kSessionResumed,
@@ -58,6 +59,7 @@ std::string ToLine(const Event& event);
 /// InvalidData when the line is not an event.
 Result<Event> ParseLine(std::string_view line);
 
+/// A journal as read from its file.
 struct JournalText {
   std::vector<Event> events;
   std::size_t whole_bytes = 0;  ///< Size of the whole lines; a torn line may follow.

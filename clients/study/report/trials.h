@@ -17,6 +17,7 @@ inline constexpr const char* kBrokenOff = "broken_off";
 /// The outcome of a trial during which the program was interrupted or killed: it does not count.
 inline constexpr const char* kInterrupted = "interrupted";
 
+/// One failure during a trial.
 struct Failure {
   std::uint64_t number = 0;  ///< The server's.
   std::string kind;          ///< Name of a stream::FailureCause.
@@ -62,6 +63,7 @@ struct Trial {
   double time_to_first_failure_s() const;  ///< NaN: none.
 };
 
+/// Rating of one item by a participant.
 struct Rating {
   std::string participant;
   std::string interface;  ///< Empty: of the whole study.
@@ -71,6 +73,7 @@ struct Rating {
   bool at_end = false;  ///< Asked in the final survey.
 };
 
+/// Free-text answer of a participant to one question.
 struct Answer {
   std::string participant;
   std::string interface;

@@ -62,6 +62,7 @@ struct ServerLinkOptions {
   std::string holder;  ///< Holder of the server's lease.
 };
 
+/// Callbacks of a session's connection to a server.
 struct ServerLinkHandlers {
   std::function<void(const v1::Tick&)> on_tick;
   std::function<void()> on_down;  ///< The connection is lost and is being restored.

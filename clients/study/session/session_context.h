@@ -18,6 +18,7 @@ namespace footing::study {
 
 class SurveyScreen;
 
+/// Options of a participant's session.
 struct SessionOptions {
   std::string participant;
   std::string study_folder;

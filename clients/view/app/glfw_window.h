@@ -22,6 +22,7 @@ struct GlfwLibrary {
   bool ready;
 };
 
+/// Deleter of a GLFW window.
 struct CloseWindow {
   void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
 };
@@ -55,6 +56,7 @@ struct WindowMouse {
   void Button(int action);
 };
 
+/// Size of a picture, pixels.
 struct PixelSize {
   int width = 0;
   int height = 0;

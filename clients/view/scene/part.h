@@ -29,6 +29,7 @@ Anatomy FindAnatomy(const stream::Skeleton& skeleton);
 /// True when a body of those parents has the same tree, so that the names fit it, too.
 bool Fits(const Anatomy& anatomy, const std::vector<int>& parents);
 
+/// Shape of a part before it is stretched and placed.
 enum class Shape : std::uint32_t {
   kBall,  ///< Unit sphere about the origin.
   kBox,   ///< Unit cube about the origin.
@@ -155,6 +156,7 @@ void AddGhostSegment(const stream::GameState& game, PartList& ghosts);
 inline const Colour kHorizonLight(0.74f, 0.84f, 0.90f);
 inline const Colour kZenithLight(0.09f, 0.30f, 0.66f);
 
+/// A vertex of the sky.
 struct SkyVertex {
   Eigen::Vector3f direction;  ///< From the eye, of any length.
   Colour colour;

@@ -61,6 +61,7 @@ struct RibbonVertex {
   float kind;  ///< 0 surface, 1 pit, 2 side, 3 white paint, 4 yellow paint.
 };
 
+/// Triangles of a track's ribbon.
 struct RibbonMesh {
   std::vector<RibbonVertex> vertices;
   std::vector<std::uint32_t> indices;
@@ -82,6 +83,7 @@ struct Stroke {
 /// 9 are painted; others leave a gap.
 std::vector<Stroke> PaintNumber(const std::string& digits);
 
+/// A vertex of a solid mesh.
 struct MeshVertex {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;

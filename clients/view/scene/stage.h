@@ -51,6 +51,7 @@ struct Picture {
   float ground_m = 0;  ///< Height of the ground around the track.
 };
 
+/// Options of the scene's picture.
 struct StageOptions {
   bool forces = false;
   bool overlay_reference = false;  ///< Over the figure in place of beside it.

@@ -43,6 +43,7 @@ struct TrialMark {
   double time_s = 0;                                      ///< Its clock then.
 };
 
+/// Trials, failures and tasks of a recording, s from its zero.
 struct Timeline {
   double begin_s = 0;
   double end_s = 0;

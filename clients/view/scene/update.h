@@ -37,6 +37,7 @@ struct CharacterPose {
   std::optional<stream::TrialState> trial;  ///< Trial of a character on a track.
 };
 
+/// One frame of the world, from one tick of footing-sim.
 struct WorldFrame {
   std::uint64_t sequence = 0;  ///< Sequence number of its tick.
   std::uint64_t step = 0;
@@ -45,6 +46,7 @@ struct WorldFrame {
   std::vector<CharacterPose> characters;
 };
 
+/// Kinds of notes that the viewer shows or counts.
 enum class NoteKind {
   kOther,
   kFall,
@@ -68,6 +70,7 @@ struct Note {
 /// How one connection fares.
 enum class LinkState { kConnecting, kLive, kStale, kRefused };
 
+/// State of one connection.
 struct LinkReport {
   std::string address;    ///< As the user typed it.
   std::string server_id;  ///< "footingd", "footing-sim"; empty before the first Welcome.
