@@ -40,16 +40,16 @@ class BlinkCalibration {
   const std::vector<std::uint32_t>& lights() const { return lights_; }
   /// Grows with every step: the lights are to be set again, even when they are the same.
   int steps() const { return steps_; }
-  /// They have it since then; frames of earlier are of the state before.
+  /// The lights have been set as wanted by this time; earlier frames show the state before.
   void LightsAreSet(std::int64_t now_ns);
-  /// A frame. `steps()` has grown afterwards when a step has ended; InvalidData when a step has
-  /// failed three times.
+  /// Takes a frame. `steps()` has grown afterwards when a step has ended; InvalidData when a step
+  /// has failed three times.
   Result<void> Take(const sphere::Image& image, std::int64_t exposed_ns);
   /// Instruction for the person and the last failure; empty: as before.
   std::string TakeMessage();
 
   bool is_done() const { return step_ == Step::kDone; }
-  /// When it is done.
+  /// Spheres that were calibrated, once it is done.
   const std::vector<CalibratedSphere>& spheres() const { return spheres_; }
   const sphere::Profile& profile() const { return profile_; }
 

@@ -46,7 +46,7 @@ class Challenge {
 
   int passed() const { return passed_; }      ///< Challenges that a sphere passed.
   int refusals() const { return refusals_; }  ///< Lights that did not follow.
-  std::string TakeMessage();                  ///< For the log; empty: nothing new.
+  std::string TakeMessage();                  ///< Message for the log; empty: nothing new.
 
  private:
   struct Seen {
@@ -130,7 +130,7 @@ class LightChecks {
   SetLight set_;
   std::function<std::int64_t()> now_ns_;
   std::vector<Held> held_;
-  int passed_before_ = 0, refused_before_ = 0;  ///< With controllers that are gone.
+  int passed_before_ = 0, refused_before_ = 0;  ///< Counts of controllers that are gone.
 };
 
 }  // namespace footing::camera

@@ -33,22 +33,23 @@ class Source {
 Result<std::unique_ptr<Source>> OpenFolder(boost::asio::io_context& io, const std::string& folder,
                                            const frames::CameraFile& camera, bool repeats);
 
-/// PGM and PPM images one after the other from a FIFO, or from standard input ("-"). A frame's
-/// exposure is when its last byte arrived less `latency_s`, or, where frames are `stamped`, the
-/// time that its comment states on the host's monotonic clock.
+/// Settings of OpenPipe(). A frame's exposure is when its last byte arrived less `latency_s`, or,
+/// where frames are `stamped`, the time that its comment states on the host's monotonic clock.
 struct PipeSettings {
   double latency_s = 0;
   bool stamped = false;
 };
+/// PGM and PPM images one after the other from a FIFO, or from standard input ("-").
 Result<std::unique_ptr<Source>> OpenPipe(boost::asio::io_context& io, const std::string& path,
                                          const PipeSettings& settings);
 
-/// A camera by V4L2: `device` is a path as /dev/video0. Exposure, gain and white balance are locked
-/// to the values given and read back; a camera that ignores one is reported by `alarm`.
+/// Controls to which OpenVideo() locks a camera.
 struct VideoSettings {
   double exposure_s = 0.004;
   int gain = -1;  ///< Gain in the driver's own scale; -1 leaves it as it is.
 };
+/// A camera by V4L2: `device` is a path as /dev/video0. Exposure, gain and white balance are locked
+/// to the values given and read back; a camera that ignores one is reported by `alarm`.
 Result<std::unique_ptr<Source>> OpenVideo(boost::asio::io_context& io, const std::string& device,
                                           const frames::CameraFile& camera,
                                           const VideoSettings& settings,
@@ -59,7 +60,7 @@ Result<void> CheckSize(const frames::Frame& frame, const frames::CameraFile& cam
 
 /// Where frames come from, as a command line names it.
 struct FrameOptions {
-  std::string device, folder, pipe;  ///< One of them.
+  std::string device, folder, pipe;  ///< Exactly one is set.
   VideoSettings video;
   PipeSettings pipe_settings;
   bool repeats = false;  ///< Plays a folder again and again.
@@ -68,6 +69,7 @@ struct FrameOptions {
     return !folder.empty() ? folder : !pipe.empty() ? pipe : device;
   }
 };
+/// Opens the source that the options name.
 Result<std::unique_ptr<Source>> OpenFrames(boost::asio::io_context& io, const FrameOptions& options,
                                            const frames::CameraFile& camera,
                                            std::function<void(const std::string&)> alarm);
@@ -124,6 +126,7 @@ struct CommandLine {
   bool json = false, quiet = false;
 };
 
+/// Adds these options to a command.
 void AddCommandLine(CLI::App& app, CommandLine& line);
 
 /// A usage error unless a camera file and one source of frames are named.

@@ -24,7 +24,7 @@ struct Shared {
 Result<std::unique_ptr<Session>> Open(const Shared& shared,
                                       std::vector<std::string> channels = {"status", "setup"});
 
-/// With --json the object, else the text; always ends the line. Bad UTF-8 is replaced.
+/// Prints the object with --json, else the text; always ends the line. Bad UTF-8 is replaced.
 void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared);
 
 /// Adds the server's remark on a command that it carried out, such as that the result is not

@@ -10,7 +10,7 @@
 #include "footing/v1/command.pb.h"
 #include "footing/v1/session.pb.h"
 
-/// Between the game's rules and the messages of the protocol.
+/// Conversion between the game's rules and the messages of the protocol.
 namespace footing::game {
 
 /// Takes in what a tick of footing-sim reports of trials.
@@ -24,6 +24,7 @@ bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand);
 /// State of the character in a tick of footing-sim.
 Frame FrameOf(const v1::Tick& tick);
 
+/// Command that appends the piece to the track.
 v1::Command ToCommand(const Piece& piece);
 
 /// Result of a game so far.
@@ -36,6 +37,7 @@ struct Report {
 /// Counts the segments of the game's rounds by what they are.
 Report MakeReport(const stream::GameState& game, const Collector& seen, double seconds);
 
+/// Report as one JSON object.
 std::string ToJson(const Report& report);
 
 /// The game in one line: "round 1 of 2  12 s left  Ann runs 23.4 m ...".

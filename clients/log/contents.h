@@ -175,7 +175,7 @@ struct Topic {
   std::uint64_t first_ns = 0;
   std::uint64_t last_ns = 0;
 
-  /// Between the first and the last message; 0 for fewer than two.
+  /// Mean rate between the first and the last message, Hz; 0 for fewer than two.
   double RateHz() const;
 };
 

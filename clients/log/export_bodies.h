@@ -98,13 +98,13 @@ class MotionGatherer {
   Result<std::vector<bool>> Valid() const;
   bool empty() const { return frames_.empty(); }
   const std::string& subject() const { return subject_; }
-  /// How much older than its frame a pose is.
+  /// Lag of a pose behind its frame, s.
   double lag_s() const;
   /// Log time of the first frame taken.
   std::uint64_t begin_ns() const { return begin_ns_; }
 
  private:
-  /// At equal steps, the newest frame of each.
+  /// Frames at equal steps: the newest one of each step.
   struct Grid {
     double step_s = 0;
     std::vector<std::size_t> frames;

@@ -59,10 +59,12 @@ struct Extent {
 /// The first bytes of a file: its mark and the file header chunk.
 std::string FileStart();
 
+/// Appends the chunk with the stream's header.
 void AppendHeader(const Stream& stream, std::string& out);
 /// Says that the stream's times are those of the file's common clock: an offset of 0. Readers
 /// expect one at the stream's begin and one at its end.
 void AppendClockOffset(const Stream& stream, double time_s, std::string& out);
+/// Appends the chunk with the stream's footer.
 void AppendFooter(const Stream& stream, const Extent& extent, std::string& out);
 /// A place at which a reader of a damaged file can start again; at least one in ten seconds.
 void AppendBoundary(std::string& out);

@@ -36,7 +36,7 @@ std::vector<transport::Channel> ChannelsNamed(
 /// Usage error that lists the channels there are when one of `names` is none of them.
 Result<void> CheckChannels(const std::vector<std::string>& names);
 
-/// Whether it can be counted on from this number and time: what comes from a broker may be
+/// True for a number and time from which ticks can be counted on: what comes from a broker may be
 /// anything.
 bool IsSound(const transport::TickNumber& number);
 

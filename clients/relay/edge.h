@@ -32,12 +32,12 @@ struct EdgeOptions {
 
 /// State and counts of an edge relay.
 struct EdgeReport {
-  std::uint64_t ticks = 0;  ///< Received.
+  std::uint64_t ticks = 0;  ///< Ticks received.
   std::uint64_t missing = 0;
   std::uint64_t left_out = 0;  ///< Ticks left out to keep the rate.
   std::uint64_t dropped = 0;   ///< Ticks dropped at full queues, all viewers together.
-  std::uint64_t accepted = 0;  ///< Connections.
-  std::uint64_t sessions = 0;  ///< At present.
+  std::uint64_t accepted = 0;  ///< Connections accepted.
+  std::uint64_t sessions = 0;  ///< Present sessions.
   bool serving = false;
   bool nats_up = false;
 };
@@ -92,7 +92,7 @@ class Edge {
   std::uint64_t wanted_ = 0;
   std::optional<Thinner> thinner_;
   std::unique_ptr<transport::Server> server_;
-  std::unique_ptr<transport::Server> former_;  ///< Until its viewers have seen why.
+  std::unique_ptr<transport::Server> former_;  ///< Former server, until its viewers have seen why.
   std::string state_;
   EdgeReport report_;
 };

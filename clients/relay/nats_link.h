@@ -21,7 +21,7 @@ struct NatsOptions {
   nats::Login login;
   std::size_t max_payload = (1u << 20) + 64;       ///< Limit of a received message.
   std::size_t max_queued_bytes = 8u << 20;         ///< More that waits to be sent is dropped.
-  double backoff_min_s = 0.1, backoff_max_s = 1;   ///< Between tries.
+  double backoff_min_s = 0.1, backoff_max_s = 1;   ///< Waits between tries.
   double ping_interval_s = 1, dead_after_s = 3.5;  ///< A link on which nothing comes is dropped.
 };
 

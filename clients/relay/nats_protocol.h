@@ -79,13 +79,15 @@ struct Login {
   std::string token;
 };
 
+/// CONNECT line of a client.
 std::string Connect(const std::string& client_name, const Login& login);
+/// SUB line; `subscription` is the client's number for it.
 std::string Subscribe(const std::string& subject, std::uint64_t subscription);
-/// A message; `reply` may be empty.
+/// PUB line with its payload; `reply` may be empty.
 std::string Publish(const std::string& subject, const std::string& reply, std::string_view payload);
 
-/// Whether it can be one part of a subject, and of a topic of MQTT: 1 to 64 letters, digits, - and
-/// _.
+/// True for a text that can be one part of a subject, and of a topic of MQTT: 1 to 64 letters,
+/// digits, - and _.
 bool IsPart(std::string_view text);
 
 }  // namespace footing::relay::nats

@@ -43,10 +43,10 @@ struct Cost {
 /// The statistics of a run: docs/skeleton.md lists the fields.
 nlohmann::ordered_json ToJson(const Tracker& tracker, const Cost& cost);
 
-/// The same of the page.
+/// Counts of the page, as JSON.
 nlohmann::ordered_json ToJson(const WebCounts& web);
 
-/// The same for a person to read, a few lines.
+/// Statistics as a few lines of text.
 std::string ToText(const nlohmann::ordered_json& statistics);
 
 }  // namespace footing::skeleton

@@ -26,9 +26,9 @@ struct WebOptions {
 
 /// Counts reported by the pages.
 struct WebCounts {
-  std::uint64_t pages = 0;    ///< That connected.
-  std::uint64_t frames = 0;   ///< Through the pose model, of the page that reported last,
-  std::uint64_t found = 0;    ///< and those with a person.
+  std::uint64_t pages = 0;    ///< Pages that connected.
+  std::uint64_t frames = 0;   ///< Frames through the pose model, of the page that reported last,
+  std::uint64_t found = 0;    ///< Those frames that show a person.
   std::uint64_t packets = 0;  ///< Skeletons, of all.
   std::uint64_t refused = 0;  ///< Requests and messages that are none.
 };
@@ -45,7 +45,7 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   const WebCounts& counts() const;
-  /// As bound.
+  /// Address as bound.
   const transport::Address& address() const;
 
  private:

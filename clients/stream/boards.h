@@ -72,15 +72,16 @@ Feed InsoleFeed(std::shared_ptr<const Stage> stage, std::size_t foot, const Inso
 
 /// The subcommand boards and its flags. `options` must outlive the parsing.
 CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options);
-/// The same of insoles.
+/// Adds the subcommand for a person with insoles.
 CLI::App* AddInsolesCommand(CLI::App& app, InsolesOptions& options);
 
-/// The terrain game's synthetic players.
+/// Options of the terrain game's synthetic players.
 struct PlayersOptions {
   std::string simulation;  ///< Address of footing-sim, which the runner sees; empty: the default.
   bool pits = false;       ///< The builder lays pits, too.
 };
 
+/// Add the subcommands for the synthetic runner and the synthetic builder.
 CLI::App* AddRunnerCommand(CLI::App& app, PlayersOptions& options);
 CLI::App* AddBuilderCommand(CLI::App& app, PlayersOptions& options);
 

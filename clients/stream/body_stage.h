@@ -51,7 +51,7 @@ class SetupBody {
   /// tight). False when it is not known.
   bool Do(const std::string& line);
 
-  /// How the boards lie: their yaw in W, as in stream::BoardPose.
+  /// Sets how the boards lie: their yaw in W, as in stream::BoardPose.
   void Lay(double left_yaw_rad, double right_yaw_rad) { yaw_rad_ = {left_yaw_rad, right_yaw_rad}; }
 
   /// Corner forces of the board that lies in this place in the beginning. Times never go back.
@@ -90,9 +90,9 @@ class SetupBody {
   noise::Random random_{7};
 };
 
-/// Who performs a guided setup, and with which devices.
+/// Person who performs a guided setup, and the devices.
 struct SetupPersonOptions {
-  std::string interface = {};  ///< Whose devices; empty: two held remotes and two boards.
+  std::string interface = {};  ///< Interface with the devices; empty: two remotes, two boards.
   std::optional<int> boards = std::nullopt;  ///< 0 to 2; nothing: those of the interface.
   double mass_kg = 70;
   std::string rig = "main";
@@ -142,6 +142,7 @@ struct SetupPersonPlan {
   Plan plan;
   std::shared_ptr<SetupBody> body;
 };
+/// Plans the person and the devices of a guided setup.
 Result<SetupPersonPlan> PlanSetupPerson(const SetupPersonOptions& options, const Common& common);
 
 /// Options of a simulated person who follows a guided setup.
@@ -164,7 +165,7 @@ std::unique_ptr<transport::Client> Watch(boost::asio::io_context& io,
                                          std::vector<std::string> channels,
                                          std::function<void(const v1::Tick&)> see);
 
-/// Which movement, and where it stands.
+/// Movement of the body, and where the body stands.
 struct StageOptions {
   std::string motion;    ///< A built-in name, or a path: .json, .bvh, .amc, .trc, .c3d.
   std::string skeleton;  ///< ASF of an AMC.

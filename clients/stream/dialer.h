@@ -31,7 +31,7 @@ struct RunnerSight {
   double speed_mps = 0;
 };
 
-/// How the hands are swung, alternately.
+/// Alternate swing of both hands.
 struct RunnerSwing {
   double frequency_hz = 0;  ///< 0: at rest.
   double amplitude_mps2 = 0;
@@ -106,6 +106,7 @@ struct RunnerPlan {
   Plan plan;
   std::shared_ptr<LiveRunner> runner;
 };
+/// Plans the two Wiimotes and the player.
 Result<RunnerPlan> PlanRunner(const Common& common);
 
 /// A synthetic user in real time: sees what footing-sim publishes of the character, its track and
@@ -125,7 +126,7 @@ class LiveUser {
  private:
   users::Intention Want();
 
-  /// Without a frame for this long the user sees nothing.
+  /// Time without a frame after which the user sees nothing.
   static constexpr double kBlindS = 0.5;
 
   stream::Track track_;
@@ -145,7 +146,7 @@ struct LiveUserPlan {
   Plan plan;
   std::shared_ptr<LiveUser> user;
 };
-/// Who the user is, as options have it.
+/// User, as the options describe them.
 struct LiveUserOptions {
   std::string interface = "wrist";
   std::string turn_by = "head";

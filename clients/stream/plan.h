@@ -107,7 +107,8 @@ class StickMotion {
   /// The stick needs `blend_s` to get to its new place. `segments` not empty.
   StickMotion(std::vector<wrists::Segment> segments, double blend_s);
 
-  /// At t_s since the start; before it the first instant, after the end the last segment goes on.
+  /// State at t_s since the start; before it the first instant, after the end the last segment goes
+  /// on.
   StickState At(double t_s) const;
   double DurationSeconds() const { return duration_s_; }
 
@@ -132,7 +133,7 @@ class BuilderScript {
  public:
   BuilderScript(std::uint64_t seed, bool pits);
 
-  /// At t_s since the start; it changes over in 0.25 s. Without end: it begins again.
+  /// Grip at t_s since the start; it changes over in 0.25 s. Without end: it begins again.
   BuilderGrip At(double t_s) const;
   double duration_s() const { return duration_s_; }
 

@@ -22,7 +22,7 @@ struct BundleOptions {
 /// Contents of a written bundle.
 struct BundleReport {
   std::size_t participants = 0;
-  std::size_t trials = 0;            ///< With motion files.
+  std::size_t trials = 0;            ///< Trials with motion files.
   std::vector<std::string> remarks;  ///< Recordings that could not be read.
 };
 

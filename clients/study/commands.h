@@ -36,18 +36,20 @@ Result<LoadedProtocol> Load(const std::string& path, const std::string& folder);
 /// Records from the journals of all participants; a failure where there is none yet.
 Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded);
 
-/// Prints a command's answer, one JSON object or its text, or its error; keeps the exit code.
+/// Answer of a command, as JSON and as text.
 struct Answer {
   nlohmann::ordered_json json;
   std::string text;
 };
+/// Prints a command's answer, one JSON object or its text, or its error; keeps the exit code.
 void Finish(const Result<Answer>& result, Shared& shared);
 
-/// Adds PROTOCOL and --folder.
+/// Values of PROTOCOL and --folder.
 struct ProtocolOptions {
   std::string path;
   std::string folder;
 };
+/// Adds PROTOCOL and --folder.
 void AddProtocolOptions(CLI::App& command, ProtocolOptions& options);
 
 /// Each adds subcommands to footing-study; their callbacks do the work.

@@ -32,7 +32,7 @@ using track::Piece;
 
 /// Inclinations within this are level, rad: nobody holds a hand quite still.
 inline constexpr double kDeadZoneRad = 0.105;  // 6 degrees.
-/// At this inclination and beyond a property is at its limit, rad; between, it grows evenly.
+/// Inclination from which on a property is at its limit, rad; below, it grows evenly.
 inline constexpr double kFullRad = 0.785;  // 45 degrees: the wrist goes no further at ease.
 
 /// The piece that the hand asks for at the track's end: within the paper's limits, and one that an
@@ -41,9 +41,9 @@ inline constexpr double kFullRad = 0.785;  // 45 degrees: the wrist goes no furt
 /// length is the way of about 1 s at `speed_mps`, within 2 and 4 m. `track` is not empty.
 Piece Held(const Hand& hand, const stream::Track& track, double speed_mps, bool pits);
 
-/// When a piece is laid: as soon as less track lies ahead of the runner than it covers in 3 s (6 to
-/// 12 m), so that ground always lies ahead and the builder still decides late. What the hand holds
-/// then is laid, as the ghost showed it.
+/// Decides when a piece is laid: as soon as less track lies ahead of the runner than three seconds
+/// of running (6 to 12 m), so that ground always lies ahead and the builder still decides late.
+/// The piece that the hand holds then is laid, as the ghost showed it.
 class Builder {
  public:
   /// State of the runner and the track at one instant.
@@ -138,7 +138,7 @@ struct GameOptions {
   int rounds = 2;
   double round_s = 60;
   double countdown_s = 5;
-  double pause_s = 8;  ///< To change the controllers over.
+  double pause_s = 8;  ///< Pause in which the players swap controllers.
   bool pits = false;
 };
 

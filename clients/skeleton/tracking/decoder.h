@@ -93,7 +93,7 @@ class Decoder {
   std::int32_t footing_user_ = 0;  // User in the packet's last head message.
   DecoderCounts counts_;
   std::string last_problem_;
-  std::array<bool, 5> reported_{};  // By Problem.
+  std::array<bool, 5> reported_{};  // Indexed by Problem.
   std::vector<std::string> problems_;
 };
 

@@ -30,6 +30,7 @@ enum class Dialect : std::uint8_t {
 };
 inline constexpr std::size_t kDialects = 6;
 
+/// Name of a dialect on the command line, and the dialect of a name.
 std::string_view NameOf(Dialect dialect);
 std::optional<Dialect> DialectOf(std::string_view name);
 
@@ -42,10 +43,11 @@ enum class Units : std::uint8_t {
   kMetres,
 };
 
+/// Name of a unit on the command line, and the unit of a name.
 std::string_view NameOf(Units units);
 std::optional<Units> UnitsOf(std::string_view name);
 
-/// How a sender was started; OSCeleton's -mx, -my, -mz and -ox, -oy, -oz.
+/// Settings with which a sender was started; OSCeleton's -mx, -my, -mz and -ox, -oy, -oz.
 struct DialectOptions {
   Units units = Units::kOfDialect;
   Eigen::Vector3d factor = Eigen::Vector3d::Ones();  ///< Not 0.

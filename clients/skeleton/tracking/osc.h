@@ -33,8 +33,8 @@ struct TimeTag {
   bool operator==(const TimeTag&) const = default;
 };
 
-/// From and to nanoseconds since 1970, to the nearest. NTP seconds start again at 0 in 2036: tags
-/// before 1968 are taken as after 2036.
+/// Converts from and to nanoseconds since 1970, to the nearest. NTP seconds start again at 0 in
+/// 2036: tags before 1968 are taken as after 2036.
 TimeTag ToTimeTag(std::int64_t unix_ns);
 std::int64_t ToUnixNs(TimeTag tag);
 

@@ -36,7 +36,7 @@ struct Observation {
   std::optional<std::int64_t> sequence;
   std::int64_t exposed_ns = 0, arrived_ns = 0;  ///< Monotonic, of this host.
   std::array<JointObservation, kJoints> joints;
-  Eigen::Isometry3d X_WK = Eigen::Isometry3d::Identity();  ///< By which they are in W.
+  Eigen::Isometry3d X_WK = Eigen::Isometry3d::Identity();  ///< Pose of K, which puts them in W.
 };
 
 /// Standard deviations of a tracked joint: jitter of recorded Kinect v2 joints (2 to 4 mm between
@@ -55,7 +55,7 @@ Observation Observe(const Skeleton& skeleton, const Eigen::Isometry3d& X_WK);
 /// observation's (docs/protocol.md).
 stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_ns);
 
-/// Where the camera is in W and where it looks.
+/// Pose of the camera in W.
 struct CameraPlace {
   Eigen::Vector3d p_W_m{2.5, 0, 1};  ///< Origin of K in W, above the boards' surface.
   double yaw_rad =
@@ -89,9 +89,10 @@ inline constexpr double kAnkleHeightM = 0.08;  ///< Height of an ankle's centre 
 Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPlace& known,
                                 bool by_camera = true);
 
-/// How old an exposure is by the sender's own time. A sender on this host, or with a synchronised
-/// clock, gives it at once. Of any other clock only differences mean something: the fastest packet
-/// of the last 10 to 20 s is taken to have needed `latency`, the others longer. A plain value.
+/// Estimates the age of an exposure by the sender's own time. A sender on this host, or with a
+/// synchronised clock, gives it at once. Of any other clock only differences mean something: the
+/// fastest packet of the last 10 to 20 s is taken to have needed `latency`, the others longer. A
+/// plain value.
 class SenderClock {
  public:
   static constexpr std::int64_t kOldestNs = 500'000'000;  ///< Older ones have another clock.
@@ -125,7 +126,7 @@ struct TrackerOptions {
 struct PersonCounts {
   Dialect dialect = Dialect::kFooting;
   std::uint64_t skeletons = 0, joints = 0, inferred = 0;
-  std::array<std::uint64_t, 5> verdicts{};  ///< By Verdict.
+  std::array<std::uint64_t, 5> verdicts{};  ///< Indexed by Verdict.
   Fault fault = Fault::kNone;               ///< Fault of the last frame.
 };
 
@@ -133,7 +134,7 @@ struct PersonCounts {
 struct TrackerCounts {
   std::uint64_t packets = 0, bytes = 0, rejected_packets = 0, skeletons = 0;
   std::uint64_t overtaken = 0;  ///< Skeletons that came after a newer one of their person.
-  std::map<std::int32_t, PersonCounts> people;  ///< By user; bounded as the decoder's.
+  std::map<std::int32_t, PersonCounts> people;  ///< Counts by user; bounded as the decoder's.
 };
 
 /// UDP packets to observations in W: decoder, gate, clock and placement of each person, of whom one

@@ -14,7 +14,7 @@ namespace footing::study::ranges {
 /// Motion of a person on two boards at one instant, by the recognisers of the interface boards.
 struct BoardMotion {
   bool stands = false;  ///< Somebody stands on the boards.
-  bool steps = false;   ///< In place, for longer than a cycle, and this step is not late.
+  bool steps = false;   ///< Steps in place for over a cycle, and this step is not late.
   double foot_hz = 0;   ///< While stepping, of one foot in the last two steps.
   bool leans_known = false;
   double lean_right = 0;  ///< Share of the load, -1 to 1; stepping the mean of two steps.
@@ -69,7 +69,7 @@ class Meter {
   };
   struct Limbs;
 
-  /// Which motion two limbs make, and since when.
+  /// Motion of two limbs, and when it began.
   struct Motion {
     enum class Kind { kNone, kAlternate, kTogether } kind = Kind::kNone;
     double since_s = 0;
@@ -92,7 +92,7 @@ class Meter {
   Motion motion_;
   BoardMeter boards_;
   double time_s_ = -1;
-  double seen_s_ = 0;     ///< With anything of the person's.
+  double seen_s_ = 0;     ///< Time with anything of the person's.
   double unequal_s_ = 0;  ///< Left and right at different frequencies.
   std::map<stream::DeviceRole, double> present_s_;
   bool simulated_ = false;

@@ -61,8 +61,7 @@ std::vector<Session> MakeSessions(const Protocol& protocol);
 /// Remarks on the plan for the experimenter, such as an incomplete square.
 std::vector<std::string> Remarks(const Protocol& protocol);
 
-/// In which order participants use the interfaces.
-/// Orders of the conditions 0 to count - 1.
+/// Orders in which participants use the interfaces: permutations of 0 to count - 1.
 using Orders = std::vector<std::vector<std::size_t>>;
 
 /// The Latin square of Williams (1949): every condition equally often at each position, and equally

@@ -49,7 +49,7 @@ struct FinalSurvey {
   std::vector<std::string> overall = {kPreferredItem, "remarks"};
 };
 
-/// How participants are spared.
+/// Rests of the participants.
 struct Rests {
   double between_s = 60;  ///< Before each interface but the first.
   /// After this time in motion (ActiveTime) the participant rests before they move again.

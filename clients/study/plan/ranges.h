@@ -21,9 +21,9 @@ inline constexpr const char* kAlternateHz = "alternate_hz";  ///< Frequency of a
 inline constexpr const char* kStraightHz = "straight_hz";    ///< Frequency of straight arms.
 inline constexpr const char* kBentHz = "bent_hz";            ///< Frequency of bent arms.
 inline constexpr const char* kTogetherHz = "together_hz";    ///< Frequency of common swings.
-/// Half peak to peak of their acceleration, m/s2.
+/// Half peak to peak acceleration of common swings, m/s2.
 inline constexpr const char* kTogetherMps2 = "together_mps2";
-/// To the right: degrees, or a share with turn_by feet.
+/// Turn to the right: degrees, or a share with turn_by feet.
 inline constexpr const char* kTurnRight = "turn_right";
 inline constexpr const char* kRestRadius = "rest_radius";        ///< Radius of a stick at rest.
 inline constexpr const char* kForwardRadius = "forward_radius";  ///< Radius of a forward push.
@@ -46,17 +46,17 @@ struct Range {
 /// Measured range of each quantity, by its name.
 using Ranges = std::map<std::string, Range>;
 
-/// One sentence for each thing that a person does, with its time; about 20 s together, of boards
-/// 33 s.
+/// Prompt for one motion of a person, with its duration.
 struct Motion {
   std::string prompt;
   double duration_s = 0;
 };
+/// Motions that measure an interface's ranges, in order; about 20 s together, boards 33 s.
 std::vector<Motion> MotionsOf(const Played& played);
-/// Their times together, s.
+/// Duration of all motions together, s.
 double DurationOf(const Played& played);
 
-/// Where a table's numbers come from.
+/// Origin of a table's numbers.
 struct Provenance {
   std::vector<std::string> participants;  ///< Codes, never names.
   std::string when;                       ///< UTC, ISO 8601.

@@ -11,7 +11,7 @@
 /// Messages between footing-study and the participant's survey screen: one JSON object a frame.
 namespace footing::study::screen {
 
-/// To the screen.
+/// Message to the screen.
 struct Shown {
   std::uint64_t number = 0;               ///< Number, from 1; 0: no question, `item` is a message.
   std::string title = {};                 ///< Subject of the question.
@@ -25,7 +25,7 @@ struct Shown {
   bool operator==(const Shown&) const = default;
 };
 
-/// From the screen: one answer to the question of that number.
+/// Message from the screen: one answer to the question of that number.
 struct Reply {
   std::uint64_t number = 0;
   std::string text;
@@ -37,9 +37,10 @@ struct Reply {
 inline constexpr std::size_t kMostAnswerBytes = 4000;
 inline constexpr std::uint32_t kMostFrameBytes = 16 * 1024;
 
+/// JSON text of a message.
 std::string ToText(const Shown& shown);
 std::string ToText(const Reply& reply);
-/// InvalidData for what is not such an object.
+/// Parses a message; InvalidData when the text is not such an object.
 Result<Shown> ParseShown(std::string_view text);
 Result<Reply> ParseReply(std::string_view text);
 

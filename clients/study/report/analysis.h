@@ -58,18 +58,17 @@ struct Measure {
 std::vector<Measure> Measures(const plan::Protocol& protocol,
                               const std::vector<records::Records>& people);
 
-/// From a measure to the table that is tested.
-/// The values to test: without those of interfaces that were not measured.
+/// Values to test: without those of interfaces that were not measured.
 Measure Measured(const Measure& measure);
 
 /// The interfaces of a protocol, the control first.
 std::vector<std::string> InOrder(const plan::Protocol& protocol);
 
-/// In their order. Interfaces without a value are left out; the blocks are of the participants with
-/// a value in each group, where there are two of them.
+/// Table of a measure, interfaces in their order. Interfaces without a value are left out; the
+/// blocks are of the participants with a value in each group, where there are two of them.
 statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol);
 
-/// The same of counts whose rates are compared: the blocks have counts per minute.
+/// Table of counts whose rates are compared: the blocks have counts per minute.
 statistics::StudyTable RateTableOf(const Measure& counts, const plan::Protocol& protocol);
 
 /// Caveats on the values of a measure that limit its tests, in sentences; empty: none.
@@ -97,7 +96,7 @@ std::string Figure(const Measure& measure, const plan::Protocol& protocol);
 std::string OpenSvg(double width, double height, const std::string& title);
 /// `anchor` is "start", "middle" or "end".
 std::string Label(double x, double y, const std::string& anchor, const std::string& text);
-/// With the characters that HTML reserves replaced.
+/// Text with the characters that HTML reserves replaced.
 std::string Escaped(const std::string& text);
 
 /// The stage of StageLatency that stands for all but the wait for contact.
@@ -116,7 +115,7 @@ double WithoutContactMs(const records::Response& response);
 /// The same without the stage "command", ms.
 double WithoutWindowMs(const records::Response& response);
 
-/// Over all responses with an interface.
+/// Latency of one stage over all responses with an interface.
 struct StageLatency {
   std::string interface;
   std::string stage;  ///< As in stream::ResponseTimes, kWithoutContact, kWithoutWindow or kWhole.
@@ -137,7 +136,7 @@ std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfa
 /// whole, as SVG.
 std::string LatencyFigure(const std::vector<StageLatency>& latency);
 
-/// How the measures are tested, as footing-eval stats has it.
+/// Options of the tests, as in footing-eval stats.
 struct TestOptions {
   statistics::Alternative alternative = statistics::Alternative::kTwoSided;
   statistics::Ties ties = statistics::Ties::kPairwise;  ///< Treatment of ties in Steel's test.

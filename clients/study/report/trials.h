@@ -26,7 +26,8 @@ struct Failure {
   bool undone = false;
 };
 
-/// From the participant's motion to the frame that shows it: the stages of stream::ResponseTimes.
+/// Duration of one stage of stream::ResponseTimes, from the participant's motion to the frame that
+/// shows it.
 struct StageTime {
   std::string stage;
   double ms = 0;
@@ -47,7 +48,7 @@ struct Trial {
   std::int64_t started_wall_ns = 0;
   /// "finished", "timed_out", "stopped", kDeviceLost, kBrokenOff, kInterrupted.
   std::string outcome;
-  double time_s = 0;  ///< From the start line; including put-backs.
+  double time_s = 0;  ///< Time from the start line, put-backs included.
   double distance_m = 0;
   double heading_oscillation_rad = 0;  ///< Standard deviation of the heading error; NaN: unknown.
   double anticipation_s = 0;  ///< Command before the line of the task; NaN: not done, or no task.
@@ -56,7 +57,7 @@ struct Trial {
   std::vector<Failure> failures;
   std::vector<Response> responses;
 
-  std::size_t Count(const std::string& kind) const;  ///< Without those undone.
+  std::size_t Count(const std::string& kind) const;  ///< Failures of a kind, without those undone.
   std::size_t failure_count() const;
   /// Time over failures; the whole time where there is none, as a lower bound.
   double mean_time_to_failure_s() const;
@@ -100,6 +101,7 @@ struct Records {
 /// Whether a trial with this outcome counts.
 bool EndedInOrder(const std::string& outcome);
 
+/// Collects the results of a journal's events.
 Records Collect(const std::vector<Event>& events);
 
 /// Failures of the attempt with that id, in the order in which they happened.

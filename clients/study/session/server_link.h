@@ -24,7 +24,7 @@ class HeldLease : public std::enable_shared_from_this<HeldLease> {
   HeldLease(const HeldLease&) = delete;
   HeldLease& operator=(const HeldLease&) = delete;
 
-  /// From the client's handler on_state.
+  /// Takes a state from the client's handler on_state.
   void OnState(transport::LinkState state);
   /// Wants the lease again after Release().
   void Hold();
@@ -81,7 +81,7 @@ class ServerLink {
   HeldLease& lease();
   const HeldLease& lease() const;
   const std::string& name() const;  ///< "footingd at unix:...".
-  /// How it stands, for a person.
+  /// State of the connection, for a person.
   std::string Text() const;
 
   /// The server is there and does not let this program in.

@@ -19,11 +19,11 @@
 
 namespace footing::study {
 
-/// How long a participant has been moving: the time during which footingd reports that a controller
-/// on the body moves. Thumbs on a joystick and weight on boards do not count.
+/// Time in motion of a participant: the time during which footingd reports that a controller on the
+/// body moves. Thumbs on a joystick and weight on boards do not count.
 class ActiveTime {
  public:
-  /// From each tick; `host_ns` is the server's clock. Time across a gap in the stream, or before
+  /// Takes each tick; `host_ns` is the server's clock. Time across a gap in the stream, or before
   /// the first tick, is not counted.
   void Add(std::int64_t host_ns, bool moving);
   double seconds() const { return seconds_; }
@@ -45,7 +45,7 @@ struct SimulationFrame {
 /// Connections to footingd, for the health of the devices, and to footing-sim, for trials.
 class Servers {
  public:
-  /// How to reach them.
+  /// Addresses of the servers and the holder of their leases.
   struct Options {
     transport::Address sensor;
     transport::Address simulation;
@@ -79,7 +79,7 @@ class Servers {
   /// Asks for it again. WhyNoDevices() says why this session does not have it yet; empty: it has.
   void KeepDevices();
   std::string WhyNoDevices() const;
-  /// How the connections that are not live stand, for a person; empty: both are.
+  /// State of the connections that are not live, for a person; empty: both are live.
   std::string WhyNotLive() const;
 
   /// Called while the console waits.
@@ -92,7 +92,7 @@ class Servers {
   Result<void> UseInterface(const std::string& interface, const std::string& turn_by,
                             const std::string& table);
 
-  /// Where the session stands, for all screens; not waited for.
+  /// Publishes the session's state for all screens; not waited for.
   void Show(const stream::StudyState& state);
 
   /// Sends a command to footing-sim and waits for the answer; a refusal is a failure with its text.

@@ -42,7 +42,7 @@ struct SessionContext {
   SurveyScreen* screen = nullptr;  ///< The participant's, where there is one.
 };
 
-/// How much the character's heading swings: the standard deviation of its heading error against the
+/// Oscillation of the character's heading: the standard deviation of its heading error against the
 /// track's centre line, rad. The gait paper (section 8.1) compares the "oscillation of the
 /// character's orientation" without defining it.
 class HeadingOscillation {

@@ -46,7 +46,7 @@ struct Options {
   double record_hz = 10;                   ///< Pictures a second.
   double seconds = 0;                      ///< Ends by itself; 0 runs on.
   bool subject = false;                    ///< The world without the panels.
-  bool text = false;                       ///< In the terminal.
+  bool text = false;                       ///< Text in the terminal.
   bool json = false;                       ///< A summary at the end.
   bool replay_falls = false;               ///< Each fall again in slow motion.
   bool overlay_reference = false;          ///< The reference pose over the body, not beside it.

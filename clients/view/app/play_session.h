@@ -50,14 +50,15 @@ class PlaySession {
   timeline::PlayHead head_;
 };
 
-/// "FILE" or "FILE:TRIAL": the longest beginning that names a file is the file.
+/// A recording and a trial in it.
 struct FileAndTrial {
   std::string file;
   std::string trial;  ///< Empty: none is named.
 };
+/// Splits "FILE" or "FILE:TRIAL": the longest beginning that names a file is the file.
 FileAndTrial SplitTrial(const std::string& text);
 
-/// "start", "finish", "wall".
+/// Alignment of a name: "start", "finish", "wall".
 Result<timeline::Alignment> AlignmentNamed(const std::string& name);
 
 /// Plays in the window, until it is closed, Ctrl-C or options.seconds. A recording that is over
@@ -74,7 +75,8 @@ struct PlayPicture {
   scene::Orbit orbit = {};
 };
 
-/// As the options ask: for the subject neither panels nor timeline; side by side no columns.
+/// View that the options ask for: for the subject neither panels nor timeline; side by side no
+/// columns.
 PlayPicture PictureFor(const Options& options, const PlaySession& session);
 
 /// Draws all sides at the head's position into the bound framebuffer.
@@ -93,7 +95,7 @@ Result<void> DrawPlayedPictures(const Options& options, PlaySession& session);
 /// is not a terminal, a line a second. Runs until Ctrl-C or options.seconds.
 Result<void> RunTextView(const Options& options);
 
-/// How often text is written: a terminal's screen, or a line elsewhere.
+/// Intervals at which text is written, s: a terminal's screen, or a line elsewhere.
 inline constexpr double kScreenEveryS = 0.25;
 inline constexpr double kLineEveryS = 1;
 

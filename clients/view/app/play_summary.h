@@ -20,7 +20,7 @@ std::string PlaySummary(const PlaySession& session, double seconds);
 /// The state at the head's position, in lines for a terminal: position, trials, and of each
 /// recording what StatusScreen says of a live view.
 std::vector<std::string> PlayScreenText(const PlaySession& session);
-/// The same in one line.
+/// State of the session in one line.
 std::string PlayLine(const PlaySession& session);
 
 /// Ctrl-C and SIGTERM for a loop that asks whether one came.

@@ -39,7 +39,7 @@ void DrawStickGauge(const Paint& paint, const Box& box, const stream::InterfaceS
 void DrawButtonGauge(const Paint& paint, const Box& box, const stream::InterfaceState& state);
 /// The load on both feet.
 void DrawLoadGauge(const Paint& paint, const Box& box, const stream::InterfaceState& state);
-/// To which side it turns, beyond the dead band.
+/// Turn to either side, beyond the dead band.
 void DrawTurnGauge(const Paint& paint, const Box& box, const stream::InterfaceState& state);
 
 }  // namespace footing::render

@@ -29,11 +29,11 @@ struct HudOptions {
   bool calibration_asked = false;
   bool calibration_end_asked = false;
   bool columns = true;        ///< The panels at both sides.
-  PanelChoice panels;         ///< Which of them.
+  PanelChoice panels;         ///< Panels shown.
   bool has_subjects = false;  ///< There are subject files for the key N.
   bool calibrates = false;    ///< There is a camera file for the key C.
   bool camera = false;        ///< The preview of footing-camera in a corner.
-  bool camera_alone = false;  ///< And nothing else.
+  bool camera_alone = false;  ///< Shows the preview and nothing else.
   std::string title;          ///< Above all else; empty: none.
   std::string over;           ///< A word below it: "ended"; empty: none.
 };
@@ -50,7 +50,7 @@ struct HudContent {
   std::int64_t past_ns = 0;
 };
 
-/// Where the panels go that this content has.
+/// Places of the panels that this content has.
 HudBoxes BoxesOf(const HudContent& content, const HudOptions& options, ImVec2 size, float scale);
 
 /// All panels over the picture.
@@ -67,12 +67,12 @@ void DrawKeys(const Paint& paint, ImVec2 size, const std::vector<scene::KeyLine>
 void DrawTitle(const Paint& paint, const std::string& title, const std::string& over, Box& space);
 /// "SIMULATED INPUT" in the middle of a row.
 void DrawSimulated(const Paint& paint, const Box& row);
-/// Which moment of the last fall is shown again; nothing while none is. This and what follows is a
+/// Moment of the last fall that is shown again; nothing while none is. This and what follows is a
 /// banner from the top of `space`, and takes away from `space` what it fills.
 void DrawReplay(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
 /// The last event, fading after 3 s.
 void DrawNote(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
-/// That the picture is frozen.
+/// Notice that the picture is frozen.
 void DrawFrozen(const Paint& paint, Box& space);
 
 /// Content of the timeline at the bottom of the picture.
@@ -83,17 +83,19 @@ struct TimelineContent {
   std::string trial;  ///< Trial at the head, as text.
 };
 
-/// Where it lies, in pixels.
+/// Place of the timeline, pixels.
 struct TimelineBoxes {
   Box bar;
   Box groove;  ///< From the timeline's beginning to its end.
 };
+/// Place of a timeline with that many lanes in a picture of that size.
 TimelineBoxes LayOutTimeline(ImVec2 size, float scale, std::size_t lanes);
 
 /// The column of pixels of a position, within the groove, and back.
 float ColumnOf(const Box& groove, const timeline::Timeline& whole, double at_s);
 double PositionAt(const Box& groove, const timeline::Timeline& whole, float column);
 
+/// Colour of a failure's mark.
 ImU32 ColourOf(stream::FailureCause cause);
 
 /// Position, trials with start and finish, failures coloured by kind with a legend, tasks.

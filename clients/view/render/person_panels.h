@@ -9,6 +9,7 @@
 
 namespace footing::render {
 
+/// Heights that the body's panel asks for.
 PanelHeight BodyPanelHeight(const scene::CharacterPose& pose, const scene::Picture& picture);
 
 /// Subject, mode, lag, T-pose, resets, feet and hands of a reconstructed body; keys, angular
@@ -16,7 +17,8 @@ PanelHeight BodyPanelHeight(const scene::CharacterPose& pose, const scene::Pictu
 void DrawBodyPanel(const Paint& paint, const Box& box, const scene::CharacterPose& pose,
                    const scene::Picture& picture);
 
-/// With the states of the gait controller only where there is space for them.
+/// Heights that the character's panel asks for; `phases`: with the states of the gait controller,
+/// only where there is space for them.
 PanelHeight CharacterPanelHeight(bool phases);
 
 /// Gait, speed against command, turn, pending command, distance, falls, and the strip of the gait

@@ -94,7 +94,7 @@ struct PlayedView {
 void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const HudOptions& options,
                   const TimelineContent* line, int width, int height);
 
-/// Where the timeline of DrawPlayback lies in a picture of that size.
+/// Place of DrawPlayback's timeline in a picture of that size.
 TimelineBoxes TimelineBoxesOf(const Screen& screen, int width, int height, std::size_t lanes);
 
 }  // namespace footing::render

@@ -10,6 +10,7 @@
 
 namespace footing::render {
 
+/// Heights that the panel asks for.
 PanelHeight StripPanelHeight(const scene::StripSet& strips);
 
 /// The sensor features of the last 10 s, one controller under the other, at most four and as many
@@ -45,7 +46,7 @@ void DrawPlots(const Paint& paint, const Box& box, const std::vector<Plot>& plot
                std::int64_t now_ns);
 /// Seconds before the newest instant, from the top of `box`, under a column of plots.
 void DrawTimeAxis(const Paint& paint, const Box& box);
-/// Where that instant stands between the left and the right edge of the curves of a column.
+/// Column of an instant, pixels, between the left and the right edge of the curves of a column.
 float PlotX(const Paint& paint, const Box& box, std::int64_t time_ns, std::int64_t now_ns);
 
 }  // namespace footing::render

@@ -7,7 +7,7 @@
 
 namespace footing::render {
 
-/// Where a study's session stands, for its experimenter; takes its height off `space`.
+/// State of a study's session, for its experimenter; takes its height off `space`.
 void DrawStudyPanel(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
 
 /// Text for the participant of a study between trials, in the middle of `space`; at its top where

@@ -12,7 +12,7 @@
 
 namespace footing::scene {
 
-/// Where the picture is taken from. World frame W; OpenGL's clip space.
+/// View point of the picture. World frame W; OpenGL's clip space.
 struct Camera {
   Eigen::Vector3d eye_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d target_m = Eigen::Vector3d(1, 0, 0);
@@ -64,8 +64,8 @@ class ChaseCamera {
   Spring x_, y_;
 };
 
-/// From the front and a little from the side, on the boards' middle; it follows a body that walks
-/// off them. `beside`: there is a second figure.
+/// Camera from the front and a little from the side, on the boards' middle; it follows a body that
+/// walks off them. `beside`: there is a second figure.
 class FrontCamera {
  public:
   void Advance(const Eigen::Vector2d& body_m, bool beside, double dt_s);
@@ -77,7 +77,7 @@ class FrontCamera {
   double distance_m_ = 0;
 };
 
-/// How a person has turned and zoomed the view with the mouse; as it is made, not at all.
+/// Turn and zoom of the view by a person with the mouse; at first none.
 struct Orbit {
   double azimuth_rad = 0;    ///< Angle of the eye around the pivot, counter-clockwise from above.
   double elevation_rad = 0;  ///< Elevation of the eye, upwards.
@@ -109,7 +109,7 @@ class MouseOrbit {
   Eigen::Vector2d pressed_ = Eigen::Vector2d::Zero();
 };
 
-/// Where a second figure stands beside the first one: on the floor, not on boards.
+/// Position of a second figure relative to the first, W: on the floor, not on boards.
 inline const Eigen::Vector3d kBesideM{-0.75, -1.30, -0.053};
 
 /// Picture of footing-camera as it is shown in a corner.
@@ -128,7 +128,7 @@ struct CameraPreview {
   std::shared_ptr<const preview::Picture> picture;
 };
 
-/// From this age on a picture is not called live: five pictures were missed.
+/// Age from which on a picture is not called live: five pictures were missed.
 inline constexpr double kPreviewStaleS = 0.5;
 
 /// Seconds since the camera saw the picture; 0 without one.
@@ -137,7 +137,7 @@ double PreviewAgeS(const CameraPreview& preview, std::int64_t now_ns);
 /// Why the picture is not live, and what to do; empty when it is.
 std::string PreviewTrouble(const CameraPreview& preview, std::int64_t now_ns);
 
-/// How a sphere fares, in one line.
+/// State of a sphere, in one line.
 struct PreviewLine {
   std::string text;
   bool is_good = false;  ///< Seen, and well.
@@ -148,7 +148,7 @@ std::vector<PreviewLine> PreviewLines(const preview::Picture& picture);
 /// All of it for a terminal, below "Camera"; nothing where it is not asked for.
 void AddPreviewLines(const CameraPreview& preview, std::int64_t now_ns,
                      std::vector<std::string>& lines);
-/// The same in one line.
+/// State of the preview in one line.
 std::string PreviewStatus(const CameraPreview& preview, std::int64_t now_ns);
 
 }  // namespace footing::scene

@@ -63,7 +63,7 @@ class FallReplay {
   /// Counts the clips that became ready.
   std::uint64_t clips() const { return clips_; }
 
-  /// From the clip's start, at `now_ns` of the viewer's clock. Does nothing before ready().
+  /// Plays from the clip's start, at `now_ns` of the viewer's clock. Does nothing before ready().
   void Start(std::int64_t now_ns);
   void Stop() { started_ns_.reset(); }
 
@@ -120,9 +120,9 @@ class Playout {
   std::deque<Timed> frames_;
 };
 
-/// How much of the past the sliding strips show.
+/// Length of the past that the sliding strips show.
 inline constexpr std::int64_t kStripNs = 10'000'000'000;
-/// An older value is no longer the present one.
+/// Age from which on a value is no longer the present one.
 inline constexpr std::int64_t kCurrentNs = 500'000'000;
 
 /// The instant up to which sliding curves are drawn: now, but where nothing has come since
@@ -177,7 +177,7 @@ struct BoardTrace {
   struct Point {
     std::int64_t time_ns = 0;
     float x_m = 0;  ///< Plate frame P: to the right.
-    float y_m = 0;  ///< To the front.
+    float y_m = 0;  ///< Position towards the front.
     bool joined = true;
   };
   stream::BoardSample newest;
@@ -273,10 +273,12 @@ struct Stance {
   double total_n = 0;
   double left_share = 0.5;  ///< 0 to 1.
 };
+/// Stance of the person on the boards.
 Stance StanceOf(const Model& model);
 
 /// Engine of the connected footing-sim: the biped, a person on boards, or not known yet.
 enum class Engine { kUnknown, kBiped, kPerson };
+/// Engine of the newest ticks.
 Engine EngineOf(const Model& model);
 
 /// Conditions that decide which keys of a live view are active.
@@ -286,6 +288,7 @@ struct KeyContext {
   bool calibrates = false;    ///< A camera file for the key C was named.
   bool may_command = false;   ///< footing-sim is connected, on this machine.
 };
+/// Conditions of the keys in the present state.
 KeyContext ContextOf(const Model& model, bool has_subjects, bool calibrates);
 
 /// A line of the list of keys.

@@ -15,7 +15,7 @@
 
 namespace footing::scene {
 
-/// Which of a skeleton's links is what of a person.
+/// Links of a skeleton that are landmarks of a person.
 struct Anatomy {
   bool person = false;  ///< All that a figure is drawn from is there.
   body::Landmarks landmarks{};
@@ -23,7 +23,7 @@ struct Anatomy {
   std::vector<float> radii_m;  ///< Half of each link's suggested size; 0 where it has none.
 };
 
-/// By the links' names; `person` is false where they are not a person's.
+/// Finds the links by name; `person` is false where they are not a person's.
 Anatomy FindAnatomy(const stream::Skeleton& skeleton);
 
 /// True when a body of those parents has the same tree, so that the names fit it, too.
@@ -117,7 +117,8 @@ struct BodyFoot {
   double airborne_s = 0;
 };
 
-/// How a reconstructed body is estimated and how well: character.proto says what each field means.
+/// Estimator state of a reconstructed body and its quality: character.proto says what each field
+/// means.
 struct BodyState {
   std::string subject;
   std::string mode;
@@ -167,6 +168,7 @@ struct SkyMesh {
   std::vector<SkyVertex> vertices;
   std::vector<std::uint32_t> indices;
 };
+/// Builds the dome and the hills.
 SkyMesh BuildSky();
 
 }  // namespace footing::scene

@@ -28,7 +28,7 @@ struct BodySigns {
   std::vector<Label> labels;
 };
 
-/// Where the COM's projection was lately, oldest first.
+/// Recent path of the COM's projection, oldest first.
 struct ComTrail {
   struct Point {
     double time_s = 0;
@@ -47,9 +47,10 @@ Eigen::Vector2f FootEllipse(const BodyFoot& foot);
 /// angular momentum, and how certain the places of the feet are.
 void AddBodySigns(const CharacterPose& pose, const ComTrail& trail, BodySigns& signs);
 
-/// Arrows at the feet, along the ground's normal force: 1 m long for kForcePerMetreN.
+/// Normal force of the ground for an arrow of 1 m.
 inline constexpr double kForcePerMetreN = 600;
 
+/// Adds arrows at the feet, along the ground's normal force.
 void AddForceArrows(const CharacterPose& pose, PartList& parts);
 
 /// Last sample of one tracker for one hand or other joint.

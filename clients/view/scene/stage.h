@@ -27,7 +27,7 @@ struct Blob {
   float darkness = 0;  ///< 0 to 1.
 };
 
-/// Where a bird marks the ground: the point under it and the ground's rise along x and y.
+/// Place where a bird marks the ground: the point under it and the ground's rise along x and y.
 struct Spot {
   Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
   Eigen::Vector2f slope = Eigen::Vector2f::Zero();

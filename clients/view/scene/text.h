@@ -37,10 +37,10 @@ std::string ReplayLine(double from_fall_s);
 
 /// The whole state in one screen of plain text, for a terminal.
 std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns);
-/// The same in one line, for a log.
+/// State of the model in one line, for a log.
 std::string StatusLine(const Model& model, std::int64_t now_ns);
 
-/// That the person's devices are silent, in words for whoever stands in front of the screen.
+/// Notice that the person's devices are silent, for a reader in front of the screen.
 struct LostSignal {
   std::string what;    ///< "No signal from the left hand and the right hand".
   std::string effect;  ///< Behaviour of the character meanwhile.
@@ -98,8 +98,8 @@ std::string ProblemText(const stream::InterfaceState& state);
 /// The whole belief in one line; empty without an interface.
 std::string InterfaceText(const stream::InterfaceState& state);
 
-/// The terrain game as a person reads it.
-/// Whether somebody plays; or has played, and no other trial has begun since. `trial` may be null.
+/// True while the terrain game is played, and after it until another trial begins. `trial` may be
+/// null.
 bool ShowsGame(const stream::GameState& game, const stream::TrialState* trial);
 
 /// State of the game: "Round 1 of 2", "Round 2 of 2 begins", "Change the controllers over", "Ben
@@ -112,7 +112,7 @@ std::string GameClock(const stream::GameState& game);
 /// Role of the player now, "runs" or "builds"; empty between rounds.
 std::string PartText(const stream::GameState& game, std::size_t player);
 
-/// How the round stands: "23.4 m, 7 of 9 segments passed, failures 2 (curve 2)"; empty before the
+/// State of the round: "23.4 m, 7 of 9 segments passed, failures 2 (curve 2)"; empty before the
 /// first one.
 std::string RoundText(const stream::GameState& game);
 

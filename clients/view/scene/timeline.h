@@ -57,7 +57,7 @@ struct Timeline {
 /// Marks of one timeline: more are refused before memory is taken.
 inline constexpr std::size_t kMostMarks = 100'000;
 
-/// The same seen from another zero: every position less `zero_s`.
+/// Timeline seen from another zero: every position less `zero_s`.
 Timeline Shifted(Timeline timeline, double zero_s);
 
 /// The first failure behind a position, or the last one before it; withdrawn ones count too.
@@ -87,7 +87,7 @@ Timeline Only(const Timeline& timeline, const TrialMark& trial);
 /// Paces of playback: recorded seconds a second.
 inline constexpr std::array kSpeeds{0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
-/// Where playback stands on a timeline, and how it moves on.
+/// Position of playback on a timeline, and its pace.
 struct PlayHead {
   double begin_s = 0;
   double end_s = 0;
@@ -98,7 +98,7 @@ struct PlayHead {
   bool ended() const { return at_s >= end_s; }
 };
 
-/// From `begin_s` on.
+/// Play head at `begin_s`.
 PlayHead HeadAt(double begin_s, double end_s, double speed);
 
 /// Moves to a position, or to the nearest end.
@@ -175,7 +175,7 @@ std::optional<PlayAction> ActionOf(const char* key);
 /// head stays where there is no failure or trial to go to.
 PlayHead Act(const PlayHead& head, PlayAction action, const Timeline& timeline, double frame_s);
 
-/// At which instant two trials stand side by side: that instant is 0 of both.
+/// Instant at which two trials are aligned: it is 0 of both.
 enum class Alignment {
   kStart,   ///< The start line, or the beginning of a trial that never crossed it.
   kFinish,  ///< The end of both trials.
@@ -196,12 +196,13 @@ Result<std::array<double, 2>> ZerosOf(const std::array<Side, 2>& sides, Alignmen
 /// The 0 of a trial that plays alone: where its clock starts.
 double ZeroOf(const Timeline& trial);
 
-/// Where one side stands while both play, at a common position within or beside its own time.
+/// State of one side while both play, at a common position within or beside its own time.
 struct SideState {
   double at_s = 0;        ///< Position to show.
   bool before = false;    ///< It has not begun: its first state is shown.
   bool finished = false;  ///< It is over: its last state is shown.
 };
+/// State of a side at the common position `at_s`.
 SideState SideAt(const Timeline& side, double at_s);
 
 /// Marks of both, over the time in which either plays.

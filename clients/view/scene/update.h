@@ -67,7 +67,7 @@ struct Note {
   std::int64_t received_ns = 0;     ///< On the viewer's clock.
 };
 
-/// How one connection fares.
+/// Liveness of one connection.
 enum class LinkState { kConnecting, kLive, kStale, kRefused };
 
 /// State of one connection.
