@@ -28,11 +28,11 @@ namespace {
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr int kMeanFrames = 6;
-constexpr std::size_t kEstimates = 48;  // Of each sphere.
-constexpr int kMostFrames = 120;        // In which they must be had.
+constexpr std::size_t kEstimates = 48;  // Estimates of each sphere.
+constexpr int kMostFrames = 120;        // Frames within which they must be found.
 constexpr int kMostFailures = 3;
 constexpr double kMostClipped = 0.02, kDimmer = 0.7, kDarkest = 0.1;
-constexpr double kSameColour = 0.15;  // Of its brightness, from blink to blink.
+constexpr double kSameColour = 0.15;  // Share of its brightness, from blink to blink.
 constexpr double kNearestHeldM = 0.35, kFarthestHeldM = 1.6;
 /// One place in the picture is like eight others at most: the pixels around it are the same.
 constexpr double kIndependent = 8;
@@ -218,7 +218,7 @@ class Calibrating {
   }
 
  private:
-  /// What takes longer does not come any more.
+  /// Ends the calibration with Late() after `within`.
   void Limit(std::chrono::seconds within) {
     limit_.expires_after(within);
     limit_.async_wait([this](boost::system::error_code error) {

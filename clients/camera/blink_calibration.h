@@ -40,16 +40,16 @@ class BlinkCalibration {
   const std::vector<std::uint32_t>& lights() const { return lights_; }
   /// Grows with every step: the lights are to be set again, even when they are the same.
   int steps() const { return steps_; }
-  /// They have it since then; frames of earlier are of the state before.
+  /// The lights have been set as wanted by this time; earlier frames show the state before.
   void LightsAreSet(std::int64_t now_ns);
-  /// A frame. `steps()` has grown afterwards when a step has ended; InvalidData when a step has
-  /// failed three times.
+  /// Takes a frame. `steps()` has grown afterwards when a step has ended; InvalidData when a step
+  /// has failed three times.
   Result<void> Take(const sphere::Image& image, std::int64_t exposed_ns);
-  /// What the person should do now, and what failed last; empty: as before.
+  /// Instruction for the person and the last failure; empty: as before.
   std::string TakeMessage();
 
   bool is_done() const { return step_ == Step::kDone; }
-  /// When it is done.
+  /// Spheres that were calibrated, once it is done.
   const std::vector<CalibratedSphere>& spheres() const { return spheres_; }
   const sphere::Profile& profile() const { return profile_; }
 
@@ -71,21 +71,22 @@ class BlinkCalibration {
   Step step_ = Step::kDark;
   std::size_t at_ = 0;  ///< The controller that blinks.
   int steps_ = 0, blinks_ = 0, failures_ = 0, frames_ = 0;
-  double level_ = 1;  ///< Of its light.
+  double level_ = 1;  ///< Brightness of its light, 0 to 1.
   std::int64_t settled_ns_;
   sphere::MeanImage dark_, lit_;
-  std::vector<sphere::Finder> finder_;  ///< Of the last step; at most one.
+  std::vector<sphere::Finder> finder_;  ///< Finder of the last step; at most one.
   std::vector<std::vector<sphere::Estimate>> estimates_;
   std::string message_;
 };
 
+/// Options of a blink calibration of the controllers' spheres.
 struct CalibrateOptions {
   frames::CameraFile camera;  ///< Its spheres are replaced; their radii stay.
   FrameOptions frames;
   transport::Address sensor;  ///< footingd's client socket, where lights are switched.
 };
 
-/// What a calibration found: one for each PS Move with a role.
+/// Result of a calibration: one sphere for each PS Move with a role.
 struct BlinkReport {
   struct Sphere {
     stream::DeviceRole role = stream::DeviceRole::kUnspecified;

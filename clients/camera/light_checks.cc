@@ -10,7 +10,7 @@
 namespace footing::camera {
 namespace {
 
-constexpr double kLeastConfidence = 0.05;        // What is less sure is not sent as a hand.
+constexpr double kLeastConfidence = 0.05;        // Estimates below this are not sent as hands.
 constexpr int kSeenFrames = 2;                   // In succession, before the light goes out for it.
 constexpr int kDarkFrames = 3, kBackFrames = 2;  // Without it, in succession; with it.
 // A slow radio is not a lamp: a light may follow this much later than it should.

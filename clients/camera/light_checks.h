@@ -27,7 +27,7 @@ class Challenge {
     kAccepted,
   };
 
-  /// What the finder saw of the sphere in a frame.
+  /// Takes the finder's estimate of the sphere in a frame; nothing: not seen.
   void Take(const std::optional<sphere::Estimate>& seen, std::int64_t exposed_ns);
   /// The light has been set as `is_dark` says, since then; frames of earlier show the one before.
   void LightIsSet(std::int64_t now_ns);
@@ -46,7 +46,7 @@ class Challenge {
 
   int passed() const { return passed_; }      ///< Challenges that a sphere passed.
   int refusals() const { return refusals_; }  ///< Lights that did not follow.
-  std::string TakeMessage();                  ///< For the log; empty: nothing new.
+  std::string TakeMessage();                  ///< Message for the log; empty: nothing new.
 
  private:
   struct Seen {
@@ -70,7 +70,7 @@ class Challenge {
   Step step_ = Step::kIdle;
   bool is_unchecked_ = false;
   int switches_ = 0;
-  int frames_ = 0;  ///< Of this step, that count towards its end.
+  int frames_ = 0;  ///< Frames of this step that count towards its end.
   int passed_ = 0, refusals_ = 0, dark_refusals_ = 0;
   std::optional<Seen> trusted_;  ///< Where it was seen last, accepted.
   std::optional<std::int64_t> began_ns_, settled_ns_;
@@ -85,7 +85,7 @@ inline constexpr std::int64_t kLightDelayNs = 400'000'000;
 
 /// How the light of one sphere stands, for a person.
 struct LightVerdict {
-  bool accepts = true;        ///< What is found is taken for the sphere.
+  bool accepts = true;        ///< A find counts as the sphere.
   bool is_switching = false;  ///< Its light is out, or on its way back.
   std::vector<sphere::Circle> refused;
 };
@@ -109,7 +109,7 @@ class LightChecks {
   void TakeFrame(std::int64_t exposed_ns, sphere::Finder& finder,
                  std::vector<std::optional<sphere::Estimate>>& found);
 
-  /// Of every sphere, after TakeFrame.
+  /// Verdict on every sphere, after TakeFrame.
   std::vector<LightVerdict> Verdicts() const;
 
   int passed() const;
@@ -121,7 +121,7 @@ class LightChecks {
     std::optional<std::uint32_t> led_rgb;
     std::optional<std::uint32_t> device = {};
     Challenge challenge = {};
-    int switches = 0;  ///< Of the challenge, as sent.
+    int switches = 0;  ///< Switches of the challenge that were sent.
   };
   std::uint32_t Wanted(const Held& held) const;
   void Switch(std::size_t sphere);
@@ -130,7 +130,7 @@ class LightChecks {
   SetLight set_;
   std::function<std::int64_t()> now_ns_;
   std::vector<Held> held_;
-  int passed_before_ = 0, refused_before_ = 0;  ///< With controllers that are gone.
+  int passed_before_ = 0, refused_before_ = 0;  ///< Counts of controllers that are gone.
 };
 
 }  // namespace footing::camera

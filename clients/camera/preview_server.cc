@@ -18,7 +18,7 @@ namespace footing::camera {
 namespace {
 
 constexpr int kMostWidth = 320;
-constexpr double kColourShare = 0.25;  // Of a sphere's chroma, as the finder's own.
+constexpr double kColourShare = 0.25;  // Share of a sphere's chroma, as in the finder.
 
 using Levels = std::array<std::uint8_t, 256>;
 

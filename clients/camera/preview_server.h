@@ -24,7 +24,7 @@ struct SeenFrame {
   std::uint64_t number = 0;
   std::int64_t exposed_ns = 0;
   frames::Frame frame;
-  std::vector<std::optional<sphere::Estimate>> found;  ///< Before the lights are checked.
+  std::vector<std::optional<sphere::Estimate>> found;  ///< Estimates before the lights are checked.
   std::vector<LightVerdict> verdicts;
   bool has_pose = false, simulated = false;
 };

@@ -213,7 +213,7 @@ Result<TrackingReport> Track(const TrackingOptions& options) { return Tracking(o
 
 namespace {
 
-constexpr double kFarthestM = 10, kLargestSdM = 1;  // Of a hand frame.
+constexpr double kFarthestM = 10, kLargestSdM = 1;  // Limits of a hand frame.
 constexpr std::int64_t kOldestNs = 1'000'000'000;
 
 stream::TrackedPoint ToPoint(const Eigen::Isometry3d& X_WC, const sphere::Estimate& estimate) {

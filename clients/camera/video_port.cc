@@ -203,7 +203,7 @@ Result<std::unique_ptr<Source>> OpenPipe(boost::asio::io_context& io, const std:
 namespace {
 
 constexpr std::uint32_t kBuffers = 4;
-constexpr std::uint64_t kFramesBetweenChecks = 120;  // Of its controls: every few seconds.
+constexpr std::uint64_t kFramesBetweenChecks = 120;  // Interval of control checks, a few seconds.
 
 class KernelPort : public VideoPort {
  public:

@@ -33,22 +33,23 @@ class Source {
 Result<std::unique_ptr<Source>> OpenFolder(boost::asio::io_context& io, const std::string& folder,
                                            const frames::CameraFile& camera, bool repeats);
 
-/// PGM and PPM images one after the other from a FIFO, or from standard input ("-"). A frame's
-/// exposure is when its last byte arrived less `latency_s`, or, where frames are `stamped`, the
-/// time that its comment states on the host's monotonic clock.
+/// Settings of OpenPipe(). A frame's exposure is when its last byte arrived less `latency_s`, or,
+/// where frames are `stamped`, the time that its comment states on the host's monotonic clock.
 struct PipeSettings {
   double latency_s = 0;
   bool stamped = false;
 };
+/// PGM and PPM images one after the other from a FIFO, or from standard input ("-").
 Result<std::unique_ptr<Source>> OpenPipe(boost::asio::io_context& io, const std::string& path,
                                          const PipeSettings& settings);
 
-/// A camera by V4L2: `device` is a path as /dev/video0. Exposure, gain and white balance are locked
-/// to the values given and read back; a camera that ignores one is reported by `alarm`.
+/// Controls to which OpenVideo() locks a camera.
 struct VideoSettings {
   double exposure_s = 0.004;
-  int gain = -1;  ///< Of the driver's own scale; -1 leaves it as it is.
+  int gain = -1;  ///< Gain in the driver's own scale; -1 leaves it as it is.
 };
+/// A camera by V4L2: `device` is a path as /dev/video0. Exposure, gain and white balance are locked
+/// to the values given and read back; a camera that ignores one is reported by `alarm`.
 Result<std::unique_ptr<Source>> OpenVideo(boost::asio::io_context& io, const std::string& device,
                                           const frames::CameraFile& camera,
                                           const VideoSettings& settings,
@@ -59,15 +60,16 @@ Result<void> CheckSize(const frames::Frame& frame, const frames::CameraFile& cam
 
 /// Where frames come from, as a command line names it.
 struct FrameOptions {
-  std::string device, folder, pipe;  ///< One of them.
+  std::string device, folder, pipe;  ///< Exactly one is set.
   VideoSettings video;
   PipeSettings pipe_settings;
-  bool repeats = false;  ///< Of a folder.
+  bool repeats = false;  ///< Plays a folder again and again.
 
   const std::string& Name() const {
     return !folder.empty() ? folder : !pipe.empty() ? pipe : device;
   }
 };
+/// Opens the source that the options name.
 Result<std::unique_ptr<Source>> OpenFrames(boost::asio::io_context& io, const FrameOptions& options,
                                            const frames::CameraFile& camera,
                                            std::function<void(const std::string&)> alarm);
@@ -117,13 +119,14 @@ class LockedControls {
 std::int64_t ExposedNs(const v4l2_buffer& buffer, const frames::CameraFile& camera,
                        double exposure_s, std::int64_t now_ns);
 
-/// What every command of footing-camera takes.
+/// Options common to all commands of footing-camera.
 struct CommandLine {
   std::string camera_file;
   FrameOptions frames;
   bool json = false, quiet = false;
 };
 
+/// Adds these options to a command.
 void AddCommandLine(CLI::App& app, CommandLine& line);
 
 /// A usage error unless a camera file and one source of frames are named.
@@ -136,6 +139,7 @@ void TakeExposure(const CommandLine& line, frames::CameraFile& camera);
 void AddCalibrateCommand(CLI::App& app, int& exit_code);
 void AddLensCommand(CLI::App& app, int& exit_code);
 
+/// Options of a lens calibration.
 struct LensOptions {
   frames::CameraFile camera;  ///< Its size and format are those of the frames.
   FrameOptions frames;
@@ -143,6 +147,7 @@ struct LensOptions {
   double seconds = 300;  ///< After that the views so far are used.
 };
 
+/// Result of a lens calibration.
 struct LensReport {
   lens_calibration::LensFit fit;
   std::size_t frames = 0, views = 0;

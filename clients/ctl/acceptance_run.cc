@@ -51,7 +51,7 @@ class Actuators {
         command.mutable_set_leds()->set_device(device.device);
         command.mutable_set_leds()->set_leds(board ? count_ % 2 : count_ % 16);
       }
-      // What came of it is in the device's status, and so in the checks.
+      // The device's status shows the outcome, and the checks read it there.
       (void)session.Call(std::move(command)).ok();
     }
   }
@@ -260,7 +260,7 @@ const std::vector<std::uint32_t>& JudgedFields() {
   return fields;
 }
 
-/// What RunAcceptance kept beside the ticks.
+/// Plan that RunAcceptance stored as metadata of the recording; nothing when there is none.
 std::optional<std::map<std::string, std::string>> KeptPlan(
     const recording::RecordedSession& session) {
   for (const mcap::Metadata& one : session.metadata()) {

@@ -14,6 +14,7 @@
 
 namespace footing::ctl {
 
+/// Options of an acceptance run.
 struct AcceptanceOptions {
   std::string rig = "main";
   double minutes = 10;
@@ -22,6 +23,7 @@ struct AcceptanceOptions {
   bool script = false;
 };
 
+/// Result of an acceptance run: its checks and the recording they were made on.
 struct AcceptanceVerdict {
   std::vector<guide::Check> checks;
   std::string recording;
@@ -47,6 +49,7 @@ std::map<std::string, std::string> AcceptanceMetadata(const std::string& rig,
                                                       const std::vector<guide::Span>& spans,
                                                       const std::vector<guide::Check>& checks);
 
+/// Plan of an acceptance run: rig, layout of the boards and spans of the motions.
 struct AcceptancePlan {
   std::string rig;
   stream::BoardLayout layout;

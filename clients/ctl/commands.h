@@ -13,7 +13,7 @@
 
 namespace footing::ctl {
 
-/// What all commands of footing-ctl share.
+/// Options and exit code common to all commands of footing-ctl.
 struct Shared {
   std::string connect;  ///< footingd's address; empty: its default.
   bool json = false;
@@ -24,12 +24,12 @@ struct Shared {
 Result<std::unique_ptr<Session>> Open(const Shared& shared,
                                       std::vector<std::string> channels = {"status", "setup"});
 
-/// With --json the object, else the text; always ends the line. Bad UTF-8 is replaced.
+/// Prints the object with --json, else the text; always ends the line. Bad UTF-8 is replaced.
 void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared);
 
-/// What the server remarked on a command that it carried out, such as that the result is not
-/// stored: goes to the person's text as "; REMARK", and to `out` as "message". Nothing when there
-/// is none.
+/// Adds the server's remark on a command that it carried out, such as that the result is not
+/// stored: to the person's text as "; REMARK", to `out` as "message". Adds nothing when there is
+/// none.
 void AddRemark(const v1::CommandResult& result, nlohmann::ordered_json& out, std::string& text);
 
 /// Runs a command's body with an open session and keeps the exit code of what it returns.

@@ -77,7 +77,7 @@ v1::Command CommandOf(const guide::Action& action, const std::string& rig) {
 }
 
 guide::Answer StoreCamera(const guide::Action& action, const std::string& file) {
-  constexpr std::size_t kDateLength = 10;  // Of ISO 8601.
+  constexpr std::size_t kDateLength = 10;  // Length of an ISO 8601 date.
   const std::string remark =
       text::Utc(clock::WallNs()).substr(0, kDateLength) + ": " + action.remark;
   const auto stored = frames::StorePose(file, action.X_WC, remark);

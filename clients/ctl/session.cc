@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kQueueTicks = 512;
 
-/// What to do when no footingd answers; `link` says why.
+/// Remedy when no footingd answers; `link` says why.
 std::string Remedy(const std::string& link) {
   // Something answers: a server that is started would not help, and the link says what would.
   if (link.find("does not speak TLS") != std::string::npos) return "";

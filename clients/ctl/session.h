@@ -17,6 +17,7 @@
 
 namespace footing::ctl {
 
+/// Options of a session with footingd.
 struct SessionOptions {
   transport::Address address;
   std::vector<std::string> channels = {"status", "setup"};  ///< "motion", "boards", ... as needed.
@@ -54,7 +55,7 @@ class Session {
   /// A line for a person on how the connection stands.
   const std::string& link() const;
 
-  /// What the server said since the last call about what slows it or this session; empty: nothing.
+  /// Server's notice since the last call on a cause that slows it or this session; empty: none.
   std::string TakeNotice();
 
   /// Called for every tick while a call waits; the tick holds the channels asked for.

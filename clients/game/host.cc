@@ -23,7 +23,7 @@
 namespace footing::game {
 namespace {
 
-/// Of a Wiimote's two button bytes.
+/// Bits of buttons A and B in a Wiimote's two button bytes.
 constexpr std::uint32_t kButtonA = 0x0008, kButtonB = 0x0004;
 
 Fault FaultOf(const v1::Failure& failure) {
@@ -34,7 +34,8 @@ Fault FaultOf(const v1::Failure& failure) {
           failure.withdrawn()};
 }
 
-/// Of the first rig whose editor sends samples; footingd sorts the rigs by name. Null when none.
+/// Editor of the first rig whose editor sends samples; footingd sorts the rigs by name. Null when
+/// none.
 const v1::DeviceFeatures* EditorOf(const v1::Tick& tick) {
   for (const v1::RigFeatures& rig : tick.features().rigs()) {
     for (const v1::DeviceFeatures& one : rig.devices()) {
@@ -250,7 +251,7 @@ Result<Recount> RecountGame(const recording::RecordedSession& session) {
   recount.equal = true;
   for (stream::GameRound& round : game->results) {
     const RoundFacts* const facts = seen.Find(round.trial);
-    // Of a round that was broken off, what is published is a moment old.
+    // The published result of a round that was broken off is a moment old.
     if (facts != nullptr && facts->phase != stream::TrialPhase::kStopped) continue;
     stream::GameRound counted = facts == nullptr ? stream::GameRound() : Score(*facts);
     counted.runner = round.runner;
@@ -271,7 +272,7 @@ namespace asio = boost::asio;
 constexpr double kHandS = 0.5;
 constexpr std::uint32_t kQueueTicks = 1024;
 constexpr auto kLine = std::chrono::seconds(1);
-/// What was ordered last is still sent, and its answer awaited, for this long at the end.
+/// Time at the end within which the last orders are still sent and their answers awaited.
 constexpr auto kLeaveWithin = std::chrono::milliseconds(500);
 
 class Host {

@@ -10,7 +10,7 @@
 #include "footing/v1/command.pb.h"
 #include "footing/v1/session.pb.h"
 
-/// Between the game's rules and the messages of the protocol.
+/// Conversion between the game's rules and the messages of the protocol.
 namespace footing::game {
 
 /// Takes in what a tick of footing-sim reports of trials.
@@ -21,12 +21,13 @@ void Take(const v1::Tick& tick, Collector& collector);
 /// inclined.
 bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand);
 
-/// What a tick of footing-sim with a character reports of it.
+/// State of the character in a tick of footing-sim.
 Frame FrameOf(const v1::Tick& tick);
 
+/// Command that appends the piece to the track.
 v1::Command ToCommand(const Piece& piece);
 
-/// What a game has come to.
+/// Result of a game so far.
 struct Report {
   stream::GameState game;
   std::uint64_t slopes = 0, curves = 0, steps = 0, pits = 0;  ///< Segments laid that have one.
@@ -36,6 +37,7 @@ struct Report {
 /// Counts the segments of the game's rounds by what they are.
 Report MakeReport(const stream::GameState& game, const Collector& seen, double seconds);
 
+/// Report as one JSON object.
 std::string ToJson(const Report& report);
 
 /// The game in one line: "round 1 of 2  12 s left  Ann runs 23.4 m ...".
@@ -55,6 +57,7 @@ struct Recount {
 /// InvalidData when the recording has no game.
 Result<Recount> RecountGame(const recording::RecordedSession& session);
 
+/// Options of a terrain game that is led by this program.
 struct HostOptions {
   GameOptions game;
   transport::Address sensor;      ///< footingd: the builder's device.

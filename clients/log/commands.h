@@ -13,7 +13,7 @@
 
 namespace footing::log_client {
 
-/// What all subcommands share.
+/// Options and exit code common to all subcommands.
 struct Shared {
   bool json = false;
   int exit_code = 0;  ///< Set by the subcommand that ran.
@@ -30,11 +30,11 @@ void AddRepairCommand(CLI::App& app, Shared& shared);
 void AddRecalibrateCommand(CLI::App& app, Shared& shared);
 void AddServeCommand(CLI::App& app, Shared& shared);
 
+/// Counts of one recalibration, for the summary.
 struct RecalibrateReport {
-  std::uint64_t messages = 0;  ///< Of the whole recording.
-  std::uint64_t samples = 0;   ///< Of hands, turned into W again.
-  std::uint64_t untouched =
-      0;  ///< Of hands by trackers without a frame of their own, or another's.
+  std::uint64_t messages = 0;   ///< Messages in the whole recording.
+  std::uint64_t samples = 0;    ///< Hand samples transformed into W again.
+  std::uint64_t untouched = 0;  ///< Hand samples left alone: no tracker frame, or another tracker.
 };
 
 /// Copies a recording, with the hands that this tracker saw where another calibration puts them:
@@ -44,6 +44,7 @@ Result<RecalibrateReport> Recalibrate(const std::string& input, const std::strin
                                       const std::string& tracker, const Eigen::Isometry3d& X_WC,
                                       const std::string& library, bool replace);
 
+/// Options of a recording.
 struct RecordOptions {
   std::vector<transport::Address> addresses;
   std::string out;
@@ -54,6 +55,7 @@ struct RecordOptions {
   std::string version;
 };
 
+/// Counts of a finished recording.
 struct RecordReport {
   std::uint64_t messages = 0;
   std::uint64_t ticks = 0;

@@ -131,7 +131,7 @@ namespace {
 
 namespace pb = google::protobuf;
 
-/// Of /SERVER/CHANNEL.
+/// SERVER of a topic "/SERVER/CHANNEL"; empty when the topic has another form.
 std::string ServerOf(const std::string& topic) {
   const std::size_t slash = topic.rfind('/');
   return slash == std::string::npos || slash == 0 ? "" : topic.substr(1, slash - 1);

@@ -21,6 +21,7 @@
 
 namespace footing::log_client {
 
+/// One exported table.
 struct ExportedFile {
   std::string topic;
   std::string path;
@@ -48,7 +49,7 @@ inline std::string WithoutEndSlashes(std::string folder) {
   return folder;
 }
 
-/// What an exported row says beside its message: its time in seconds and as wall time, the role of
+/// Columns of an exported row beside its message: its time in seconds and as wall time, the role of
 /// the device that it is about, the names of a character's links and contact points, the stated
 /// standard deviation of a reconstructed person's links. They come from other messages of the same
 /// server, as far as the recording has been read.
@@ -81,7 +82,7 @@ class RowNotes {
     std::map<std::uint32_t, std::string> roles;
     std::vector<std::string> links;
     std::vector<std::string> contacts;
-    std::vector<double> orientation_sd_rad;  ///< Of a reconstructed person, as many as links.
+    std::vector<double> orientation_sd_rad;  ///< One per link of a reconstructed person.
   };
 
   const Server& ServerAt(const std::string& topic) const;
@@ -116,9 +117,9 @@ class Tables {
                                            const google::protobuf::Message& message)>;
   Result<void> Walk(const Visit& visit);
 
-  /// By channel.
+  /// Topics by MCAP channel id.
   const std::map<std::uint16_t, TopicTable>& topics() const { return topics_; }
-  /// Of the whole recording after Learn(); while Walk() goes on, of what it has passed.
+  /// Notes on the whole recording after Learn(); during Walk(), on the part read so far.
   const RowNotes& notes() const { return notes_; }
 
  private:
@@ -136,6 +137,7 @@ class Tables {
   Result<void> first_failure_;
 };
 
+/// Options of an export in the form of BIDS-motion.
 struct BidsOptions {
   std::string subject;  ///< Letters and digits; empty: "01".
   std::string task;     ///< Letters and digits; empty: those of the recording's name.
@@ -143,14 +145,15 @@ struct BidsOptions {
   std::string version;
 };
 
-/// What one tracking system measured.
+/// Exported motion of one tracking system.
 struct ExportedTable {
-  std::string path;  ///< Of the file with the motion.
+  std::string path;  ///< Path of the motion file.
   std::string tracking_system;
   std::size_t channels = 0;
   std::size_t samples = 0;
 };
 
+/// Result of an export in the form of BIDS-motion.
 struct ExportedBids {
   std::vector<ExportedTable> tables;
   std::size_t events = 0;
@@ -164,6 +167,7 @@ struct ExportedBids {
 Result<ExportedBids> ExportBids(const std::string& recording, const std::string& folder,
                                 const BidsOptions& options);
 
+/// One topic of a recording; times in ns on the recorder's clock.
 struct Topic {
   std::string name;
   std::string schema;
@@ -171,17 +175,18 @@ struct Topic {
   std::uint64_t first_ns = 0;
   std::uint64_t last_ns = 0;
 
-  /// Between the first and the last message; 0 for fewer than two.
+  /// Mean rate between the first and the last message, Hz; 0 for fewer than two.
   double RateHz() const;
 };
 
+/// One attachment of a recording, without its bytes.
 struct AttachmentNote {
   std::string name;
   std::string media_type;
   std::uint64_t bytes = 0;
 };
 
-/// What a recording holds.
+/// Summary of a recording: topics, attachments, time span and gaps.
 struct Contents {
   std::string path;
   std::uint64_t bytes = 0;
@@ -194,7 +199,7 @@ struct Contents {
   std::uint64_t end_ns = 0;
   /// Some device or input of a character was simulated; nothing when no message says.
   std::optional<bool> simulated;
-  /// What each footing-sim ran with, as it said last: its EffectiveConfig, JSON.
+  /// Last EffectiveConfig that each footing-sim reported, JSON.
   std::vector<std::string> configs;
   std::uint64_t gaps = 0;
   std::uint64_t missing_ticks = 0;
@@ -208,7 +213,7 @@ struct Contents {
 /// Reads a whole recording, cut ones as far as they go. InvalidData only when it is none at all.
 Result<Contents> ReadContents(const std::string& path);
 
-/// What is wrong with a recording that is not complete; nothing when it is.
+/// Error that describes an incomplete recording; nothing when it is complete.
 std::optional<Error> Incomplete(const std::string& path, const mcap::WalkEnd& end);
 
 }  // namespace footing::log_client

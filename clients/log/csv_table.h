@@ -36,8 +36,8 @@ class CsvTable {
   /// The entries of a message's rows; one null for a message that has one row.
   std::vector<const google::protobuf::Message*> Rows(
       const google::protobuf::Message& message) const;
-  /// What a row has in the columns of NumberNames(): flags are 0 or 1, enums their number, what the
-  /// message does not have is NaN.
+  /// Values of a row in the columns of NumberNames(): flags are 0 or 1, enums their number, fields
+  /// that the message does not have are NaN.
   std::vector<double> Numbers(const google::protobuf::Message& message,
                               const google::protobuf::Message* entry) const;
 
@@ -61,7 +61,7 @@ class CsvTable {
   struct Node {
     const google::protobuf::FieldDescriptor* field = nullptr;
     std::size_t entries = 0;
-    std::vector<Node> children;  ///< Of a field that is a message.
+    std::vector<Node> children;  ///< Fields of a nested message.
   };
 
   static std::vector<Node> NodesOf(const google::protobuf::Descriptor& type,

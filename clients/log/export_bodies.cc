@@ -390,7 +390,7 @@ namespace {
 
 constexpr double kMostRateHz = 1000;
 constexpr double kMostLagS = 10;
-constexpr double kMostRowsPerFrame = 100;  // What is missing between frames is filled.
+constexpr double kMostRowsPerFrame = 100;  // Limit on rows that fill gaps between frames.
 
 Eigen::Vector3d PlaceOf(const v1::Character& character, int link) {
   return wire::FromProto(character.links(link).position_m());

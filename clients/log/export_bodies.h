@@ -21,7 +21,7 @@ struct ExportedMotion {
   std::string path;
   std::string subject;  ///< Code; empty where nobody was named.
   std::uint64_t frames = 0;
-  std::uint64_t invalid_frames = 0;  ///< Of `frames`: the engine reported them as not valid.
+  std::uint64_t invalid_frames = 0;  ///< Part of `frames` reported not valid by the engine.
   double rate_hz = 0;
   double begin_s = 0;        ///< Its first frame, from the recording's first message on.
   std::string angle_errors;  ///< The file with the stated errors of this person's angles.
@@ -31,6 +31,7 @@ struct ExportedMotion {
 /// They are not seen in a frame that is not `valid`.
 motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector<bool>& valid);
 
+/// File format of an exported body.
 enum class BodyFormat {
   kBvh,  ///< Skeleton and rotations.
   kTrc,  ///< Places of the joints.
@@ -53,7 +54,7 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
 
 /// Forces under the feet of a reconstructed body, a table for OpenSim (.mot). Axes: x ahead, y up,
 /// z right.
-/// What carries a foot: force upwards at a point of the floor.
+/// Ground reaction on one foot: upward force, N, at a point of the floor.
 struct FootForce {
   double load_n = 0;
   Eigen::Vector3d cop_W = Eigen::Vector3d::Zero();  ///< m.
@@ -97,13 +98,13 @@ class MotionGatherer {
   Result<std::vector<bool>> Valid() const;
   bool empty() const { return frames_.empty(); }
   const std::string& subject() const { return subject_; }
-  /// How much older than its frame a pose is.
+  /// Lag of a pose behind its frame, s.
   double lag_s() const;
   /// Log time of the first frame taken.
   std::uint64_t begin_ns() const { return begin_ns_; }
 
  private:
-  /// At equal steps, the newest frame of each.
+  /// Frames at equal steps: the newest one of each step.
   struct Grid {
     double step_s = 0;
     std::vector<std::size_t> frames;

@@ -109,8 +109,8 @@ class XdfExporter {
   }
 
  private:
-  /// What the rows of one stream have in common. A device may get another number, and a number
-  /// another role.
+  /// Key that the rows of one stream share. A device may get another number, and a number another
+  /// role.
   struct Key {
     std::uint16_t channel = 0;
     std::uint32_t device = 0;

@@ -18,6 +18,7 @@ struct ExportedStream {
   std::uint64_t samples = 0;
 };
 
+/// Result of an export to XDF.
 struct ExportedXdf {
   std::string path;
   std::vector<ExportedStream> streams;
@@ -46,10 +47,10 @@ struct Stream {
   std::string source_id;  ///< The same for the same source in every recording.
   std::vector<std::string> channels;
   bool is_text = false;
-  std::string note{};  ///< What else its header says; may be empty.
+  std::string note{};  ///< Remark in the stream's header; may be empty.
 };
 
-/// What a stream's footer says.
+/// Contents of a stream's footer: first and last time, s, and sample count.
 struct Extent {
   double first_s = 0, last_s = 0;
   std::uint64_t samples = 0;
@@ -58,10 +59,12 @@ struct Extent {
 /// The first bytes of a file: its mark and the file header chunk.
 std::string FileStart();
 
+/// Appends the chunk with the stream's header.
 void AppendHeader(const Stream& stream, std::string& out);
 /// Says that the stream's times are those of the file's common clock: an offset of 0. Readers
 /// expect one at the stream's begin and one at its end.
 void AppendClockOffset(const Stream& stream, double time_s, std::string& out);
+/// Appends the chunk with the stream's footer.
 void AppendFooter(const Stream& stream, const Extent& extent, std::string& out);
 /// A place at which a reader of a damaged file can start again; at least one in ten seconds.
 void AppendBoundary(std::string& out);

@@ -12,16 +12,17 @@
 #include "common/net/session.h"
 #include "footing/v1/session.pb.h"
 
-/// What a relay must know of the channels that it hands on.
+/// Channels as a relay sees them: their kinds, and how they are thinned to a rate.
 namespace footing::relay {
 
+/// How a channel is relayed at a reduced rate.
 enum class ChannelKind {
   kRetained,  ///< A state: its last value is kept for those who come later.
   kSampled,   ///< Samples or poses: a newer one takes an older one's place.
   kWhole,     ///< Everything else, such as events: none may be left out.
 };
 
-/// Of a field of v1::Tick. One that this version does not know is handed on whole.
+/// Kind of a field of v1::Tick. A field that this version does not know is relayed whole.
 ChannelKind KindOf(std::uint32_t field);
 
 /// The name of a channel; empty for a field that is none.
@@ -35,7 +36,7 @@ std::vector<transport::Channel> ChannelsNamed(
 /// Usage error that lists the channels there are when one of `names` is none of them.
 Result<void> CheckChannels(const std::vector<std::string>& names);
 
-/// Whether it can be counted on from this number and time: what comes from a broker may be
+/// True for a number and time from which ticks can be counted on: what comes from a broker may be
 /// anything.
 bool IsSound(const transport::TickNumber& number);
 
@@ -74,7 +75,7 @@ class Thinner {
   double rate_hz_;
   std::uint64_t begin_;  ///< Older retained channels are of no use.
   std::uint64_t last_sequence_;
-  std::map<std::uint32_t, std::string> waiting_;  ///< Of channels of samples, by field.
+  std::map<std::uint32_t, std::string> waiting_;  ///< Newest samples of each channel, by field.
   std::map<std::uint32_t, std::string> retained_;
   std::map<std::uint32_t, std::uint64_t> came_;  ///< Sequence of a retained channel's last value.
   transport::Decimator decimator_;

@@ -193,7 +193,7 @@ void Edge::Begin(const v1::Tick& snapshot) {
   handlers.on_overload = [](const transport::OverloadLine& line) {
     log::Write(log::Level::kWarning, line.text, {"", line.session, line.channel});
   };
-  // What the silence before took: viewers who resume get it as a Gap.
+  // Ticks lost in the silence before: viewers who resume get them as a Gap.
   const bool again = former_ && former_->epoch() == options.epoch;
   if (again && snapshot.sequence() > thinner_->last_sequence())
     report_.missing += snapshot.sequence() - thinner_->last_sequence();

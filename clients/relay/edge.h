@@ -18,24 +18,26 @@
 
 namespace footing::relay {
 
+/// Options of an edge relay.
 struct EdgeOptions {
   std::string site;
   std::string server;  ///< As the server calls itself, such as footingd.
   NatsOptions nats;
   std::vector<transport::Address> listen;
-  double rate_hz = 30;  ///< Of each channel of samples; 0: every tick.
+  double rate_hz = 30;  ///< Rate of each channel of samples; 0: every tick.
   transport::SessionLimits sessions;
   transport::AccessSettings access;
   double silent_after_s = 3;  ///< Viewers are sent away after this long without a tick.
 };
 
+/// State and counts of an edge relay.
 struct EdgeReport {
-  std::uint64_t ticks = 0;  ///< Received.
+  std::uint64_t ticks = 0;  ///< Ticks received.
   std::uint64_t missing = 0;
-  std::uint64_t left_out = 0;  ///< By the rate.
-  std::uint64_t dropped = 0;   ///< Of full queues of viewers, all together.
-  std::uint64_t accepted = 0;  ///< Connections.
-  std::uint64_t sessions = 0;  ///< At present.
+  std::uint64_t left_out = 0;  ///< Ticks left out to keep the rate.
+  std::uint64_t dropped = 0;   ///< Ticks dropped at full queues, all viewers together.
+  std::uint64_t accepted = 0;  ///< Connections accepted.
+  std::uint64_t sessions = 0;  ///< Present sessions.
   bool serving = false;
   bool nats_up = false;
 };
@@ -55,7 +57,7 @@ class Edge {
   void Drain(const std::string& reason, std::function<void()> done);
   void Stop();
   EdgeReport report() const;
-  /// What it does or waits for: a line for a person.
+  /// Present activity or wait, as a line for a person.
   const std::string& state() const { return state_; }
 
  private:
@@ -90,7 +92,7 @@ class Edge {
   std::uint64_t wanted_ = 0;
   std::optional<Thinner> thinner_;
   std::unique_ptr<transport::Server> server_;
-  std::unique_ptr<transport::Server> former_;  ///< Until its viewers have seen why.
+  std::unique_ptr<transport::Server> former_;  ///< Former server, until its viewers have seen why.
   std::string state_;
   EdgeReport report_;
 };

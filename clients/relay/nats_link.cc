@@ -99,7 +99,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
     bool greeted = false;  ///< Its INFO came, and our subscriptions went.
     bool up = false;
     std::int64_t heard_ns = 0;
-    std::string why;  ///< What the server said last that was wrong.
+    std::string why;  ///< Last error that the server reported.
   };
 
   void Dial() {
@@ -281,7 +281,7 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
 
   bool Publish(const std::string& topic, const std::string& payload, bool retain) {
     if (!up_) {
-      if (was_up_ && !retain) ++dropped_;  // What is retained comes again.
+      if (was_up_ && !retain) ++dropped_;  // Retained topics are sent again.
       return false;
     }
     const bool sent = in_flight_ < options_.max_in_flight &&

@@ -14,16 +14,18 @@
 
 namespace footing::relay {
 
+/// Options of a connection to a NATS server.
 struct NatsOptions {
   transport::Address address;
   std::string client_name;
   nats::Login login;
-  std::size_t max_payload = (1u << 20) + 64;       ///< Of a message that comes.
+  std::size_t max_payload = (1u << 20) + 64;       ///< Limit of a received message.
   std::size_t max_queued_bytes = 8u << 20;         ///< More that waits to be sent is dropped.
-  double backoff_min_s = 0.1, backoff_max_s = 1;   ///< Between tries.
+  double backoff_min_s = 0.1, backoff_max_s = 1;   ///< Waits between tries.
   double ping_interval_s = 1, dead_after_s = 3.5;  ///< A link on which nothing comes is dropped.
 };
 
+/// Callbacks of a connection to a NATS server.
 struct NatsLinkHandlers {
   /// The server took us in; subscriptions are made already.
   std::function<void()> on_up;
@@ -58,6 +60,7 @@ class NatsLink {
   std::shared_ptr<Implementation> implementation_;
 };
 
+/// Options of a connection to an MQTT broker.
 struct MqttOptions {
   std::string host;
   int port = 1883;
@@ -67,6 +70,7 @@ struct MqttOptions {
   int max_in_flight = 1024;  ///< Messages that the library may hold; further ones are dropped.
 };
 
+/// Callbacks of a connection to an MQTT broker.
 struct MqttLinkHandlers {
   std::function<void()> on_up;
   std::function<void(const std::string& why)> on_down;

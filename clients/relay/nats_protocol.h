@@ -11,7 +11,7 @@
 /// The text protocol of NATS, client's side: https://docs.nats.io/reference/nats-protocol.
 namespace footing::relay::nats {
 
-/// What a server says of itself in INFO.
+/// Properties that a server states in INFO.
 struct ServerInfo {
   std::string version;
   std::size_t max_payload = 0;  ///< It refuses a longer message; 0: not said.
@@ -28,6 +28,7 @@ struct Message {
   bool no_responders = false;  ///< In answer to a request: nobody listens on its subject.
 };
 
+/// Callbacks for the messages of a server, one for each verb.
 struct Handlers {
   std::function<void(const ServerInfo&)> on_info;
   std::function<void(const Message&)> on_message;
@@ -71,21 +72,22 @@ class Parser {
   Announced announced_;
 };
 
-/// What a client of NATS sends.
-/// By what it shows that it may come in; all empty: by nothing.
+/// Credentials of a NATS client; all empty: none.
 struct Login {
   std::string user;
   std::string password;
   std::string token;
 };
 
+/// CONNECT line of a client.
 std::string Connect(const std::string& client_name, const Login& login);
+/// SUB line; `subscription` is the client's number for it.
 std::string Subscribe(const std::string& subject, std::uint64_t subscription);
-/// A message; `reply` may be empty.
+/// PUB line with its payload; `reply` may be empty.
 std::string Publish(const std::string& subject, const std::string& reply, std::string_view payload);
 
-/// Whether it can be one part of a subject, and of a topic of MQTT: 1 to 64 letters, digits, - and
-/// _.
+/// True for a text that can be one part of a subject, and of a topic of MQTT: 1 to 64 letters,
+/// digits, - and _.
 bool IsPart(std::string_view text);
 
 }  // namespace footing::relay::nats

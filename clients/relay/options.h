@@ -16,6 +16,7 @@
 /// Options that both subcommands have, and how both run.
 namespace footing::relay {
 
+/// Flags common to both subcommands.
 struct SiteFlags {
   std::string site;
   double seconds = 0;
@@ -33,6 +34,7 @@ Result<NatsOptions> NatsOf(const std::string& address, const std::string& login_
 Result<std::unique_ptr<monitoring::MetricsEndpoint>> ServeMetrics(
     boost::asio::io_context& io, const SiteFlags& flags, std::function<std::string()> text);
 
+/// Why a run has ended.
 enum class RunEnd { kStopped, kTimeUp };
 
 /// Runs the loop until SIGINT, SIGTERM or the time is up. Then `end` is called once, with what
@@ -44,7 +46,7 @@ RunEnd RunUntilStopped(boost::asio::io_context& io, double seconds,
 std::string MetricsText(const PublisherReport& report, const std::string& version);
 std::string MetricsText(const EdgeReport& report, const std::string& version);
 
-/// What both ways to run have in common.
+/// Options and exit code common to both subcommands.
 struct Shared {
   bool json = false;
   int exit_code = 0;

@@ -190,7 +190,7 @@ void Publisher::OnTick(const Source& source, const v1::Tick& tick) {
 void Publisher::PublishChannels(const Source& source, const v1::Tick& tick) {
   auto found = thinners_.find(tick.epoch());
   if (found == thinners_.end()) {
-    if (thinners_.size() > options_.servers.size()) thinners_.clear();  // Of former epochs.
+    if (thinners_.size() > options_.servers.size()) thinners_.clear();  // Drops former epochs.
     const std::uint64_t before = tick.snapshot() ? tick.sequence() : tick.sequence() - 1;
     const Thinner fresh(options_.mqtt_rate_hz, source.tick_rate_hz(), before);
     found = thinners_.emplace(tick.epoch(), fresh).first;

@@ -66,15 +66,17 @@ class Source {
   transport::Client client_;
 };
 
+/// Options of a publisher.
 struct PublisherOptions {
   std::string site;
   std::vector<transport::Address> servers;
   std::vector<std::string> channels;  ///< Empty: all.
   std::optional<NatsOptions> nats;
   std::optional<MqttOptions> mqtt;
-  double mqtt_rate_hz = 20;  ///< Of each channel of samples; 0: every tick.
+  double mqtt_rate_hz = 20;  ///< Rate of each channel of samples; 0: every tick.
 };
 
+/// State and counts of a publisher.
 struct PublisherReport {
   struct SourceState {
     std::string address;
@@ -86,7 +88,7 @@ struct PublisherReport {
   std::uint64_t published = 0;  ///< Messages, answers not counted.
   std::uint64_t dropped = 0;    ///< Messages that a broker did not take: gone, slow, or too small.
   std::vector<SourceState> sources;
-  std::optional<bool> nats_up, mqtt_up;  ///< Of the brokers that are published in.
+  std::optional<bool> nats_up, mqtt_up;  ///< State of each configured broker.
 };
 
 /// Publishes the ticks of servers in NATS, as they are, and in MQTT, a channel a topic. Everything

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kMostClipBytes = std::size_t{256} << 20;  // Three hours at 30 Hz.
 
-/// What --units, --factor, --offset, --flip-y, --mirrored and --swap-sides say.
+/// Values of --units, --factor, --offset, --flip-y, --mirrored and --swap-sides.
 struct DialectFlags {
   std::string units = "dialect";
   std::vector<double> factor{1, 1, 1}, offset{0, 0, 0};

@@ -4,7 +4,7 @@
 
 namespace footing::skeleton {
 
-/// What the command line of both ways to run has in common.
+/// Options and exit code common to both subcommands.
 struct Shared {
   bool json = false;
   int exit_code = 0;

@@ -33,8 +33,8 @@ constexpr auto kFlush = std::chrono::milliseconds(10);
 constexpr auto kPagesLeave = std::chrono::milliseconds(100);
 constexpr int kMostAtOnce = 64;  // Packets before the other work of this thread has its turn.
 constexpr std::int64_t kQuietNs = 10'000'000'000;  // Between two lines on dropped packets.
-constexpr std::size_t kMaxQueuedFrames = 64;       // To footingd.
-constexpr int kReceiveBytes = 1 << 20;             // Of the kernel's buffer.
+constexpr std::size_t kMaxQueuedFrames = 64;       // Queue to footingd.
+constexpr int kReceiveBytes = 1 << 20;             // Size of the kernel's buffer.
 
 class Receiver {
  public:

@@ -12,6 +12,7 @@
 
 namespace footing::skeleton {
 
+/// Options of the receiver.
 struct ReceiverOptions {
   TrackerOptions tracker;
   boost::asio::ip::udp::endpoint listen;
@@ -22,8 +23,9 @@ struct ReceiverOptions {
   double most_packets_per_s = 50'000;     ///< More are dropped unread.
 };
 
+/// Result of a receiver's run.
 struct Reception {
-  nlohmann::ordered_json statistics;  ///< What --json prints: see docs/skeleton.md.
+  nlohmann::ordered_json statistics;  ///< Output of --json: see docs/skeleton.md.
   Result<void> published;             ///< No device: footingd was not there for all of `seconds`.
 };
 

@@ -15,6 +15,7 @@
 
 namespace footing::skeleton {
 
+/// Options of a sender that plays a clip.
 struct SenderOptions {
   boost::asio::ip::udp::endpoint to;
   Dialect dialect = Dialect::kFooting;
@@ -30,7 +31,7 @@ struct SenderOptions {
 Result<nlohmann::ordered_json> SendClip(const std::vector<ClipFrame>& clip,
                                         const SenderOptions& options);
 
-/// What a run took, beside the tracker's counts.
+/// Resources and packets of a run, beside the tracker's counts.
 struct Cost {
   double seconds = 0;
   double cpu_s = 0;
@@ -42,10 +43,10 @@ struct Cost {
 /// The statistics of a run: docs/skeleton.md lists the fields.
 nlohmann::ordered_json ToJson(const Tracker& tracker, const Cost& cost);
 
-/// The same of the page.
+/// Counts of the page, as JSON.
 nlohmann::ordered_json ToJson(const WebCounts& web);
 
-/// The same for a person to read, a few lines.
+/// Statistics as a few lines of text.
 std::string ToText(const nlohmann::ordered_json& statistics);
 
 }  // namespace footing::skeleton

@@ -43,7 +43,7 @@ const std::map<std::string_view, const char*> kTypes = {
     {".wasm", "application/wasm"},
 };
 
-/// What the connections share.
+/// State shared by the connections.
 struct Desk {
   WebOptions options;
   WebCounts counts;

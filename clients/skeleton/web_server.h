@@ -16,18 +16,19 @@
 
 namespace footing::skeleton {
 
+/// Options of the server of the page with the pose model.
 struct WebOptions {
   transport::Address listen;      ///< tcp, of this host only: browsers give it their webcam.
   std::filesystem::path package;  ///< The folder of npm's @mediapipe/pose.
-  std::function<void(osc::Bytes packet)> on_packet;            ///< What a page sends.
-  std::function<void(const std::string& line)> on_state = {};  ///< What a page says of itself.
+  std::function<void(osc::Bytes packet)> on_packet;            ///< OSC packet of a page.
+  std::function<void(const std::string& line)> on_state = {};  ///< State that a page reports.
 };
 
-/// What pages have reported.
+/// Counts reported by the pages.
 struct WebCounts {
-  std::uint64_t pages = 0;    ///< That connected.
-  std::uint64_t frames = 0;   ///< Through the pose model, of the page that reported last,
-  std::uint64_t found = 0;    ///< and those with a person.
+  std::uint64_t pages = 0;    ///< Pages that connected.
+  std::uint64_t frames = 0;   ///< Frames through the pose model, of the page that reported last,
+  std::uint64_t found = 0;    ///< Those frames that show a person.
   std::uint64_t packets = 0;  ///< Skeletons, of all.
   std::uint64_t refused = 0;  ///< Requests and messages that are none.
 };
@@ -44,7 +45,7 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   const WebCounts& counts() const;
-  /// As bound.
+  /// Address as bound.
   const transport::Address& address() const;
 
  private:
@@ -56,7 +57,7 @@ class WebServer {
 /// A file of the page, which is part of the program.
 struct PageFile {
   std::string_view name;
-  std::string_view type;  ///< Of its content, for HTTP.
+  std::string_view type;  ///< Media type for HTTP.
   std::string_view text;
 };
 
@@ -71,8 +72,8 @@ std::filesystem::path DefaultPosePackage();
 std::optional<std::filesystem::path> ModelFile(const std::filesystem::path& package,
                                                std::string_view name);
 
-/// What a browser gives as the host that it asks, "NAME:PORT", is this one. One that was led here
-/// by a name of somebody else (DNS rebinding) gives that.
+/// True when the Host header of a browser's request, "NAME:PORT", names this host. A browser that
+/// was led here by a foreign name (DNS rebinding) sends that name.
 bool IsOwnHost(std::string_view host);
 
 }  // namespace footing::skeleton

@@ -38,7 +38,7 @@ namespace {
 using stream::DeviceRole;
 namespace sensors = virtual_sensors;
 
-/// What the cells of one board read; a copy starts from the beginning.
+/// Readings of one board's cells; a copy starts from the beginning.
 SimulatedDevice::CornerForces UnderFoot(std::shared_ptr<const Stage> stage, std::size_t foot,
                                         sensors::CellErrorConfig errors, std::uint64_t seed) {
   errors.seed = seed;
@@ -59,7 +59,7 @@ sensors::HeldErrors ErrorsOf(bool rolled, std::uint64_t seed) {
   return sensors::HeldErrors(config);
 }
 
-/// What a device on that course measures, in its own frame: x left, y front, z down.
+/// Readings of a device on that course, in its own frame: x left, y front, z down.
 template <typename Sensors>
 std::function<Sensors(double)> Felt(std::shared_ptr<const Stage> stage,
                                     sensors::HeldCourse true_course,
@@ -348,7 +348,7 @@ CLI::App* AddBuilderCommand(CLI::App& app, PlayersOptions& options) {
 namespace {
 
 constexpr double kTruthRateHz = 60;
-constexpr std::size_t kMostJoints = 64;  // Of a reference frame.
+constexpr std::size_t kMostJoints = 64;  // Limit of a reference frame.
 constexpr double kLeastSdM = 0.001;      // Nobody's tracker is exact.
 constexpr double kCapM = 0.12;           // A sphere on a cap, above the middle of the head.
 
@@ -574,14 +574,15 @@ class Renderer {
   const int ended_;
   noise::Random random_;
   exchange::Flag busy_;
-  bool closed_ = false;  // Of the render thread.
+  bool closed_ = false;  // Used by the render thread.
   boost::asio::io_context io_;
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_;
   std::thread thread_;
 };
 
-/// What a sphere shows the simulated camera at a colour of its light: each of three LEDs on the
-/// sensor's red, green and blue, whose filters overlap, and ambient light on the white plastic.
+/// Colour of a sphere in the simulated camera at a colour of its light, digital numbers: each of
+/// three LEDs on the sensor's red, green and blue, whose filters overlap, and ambient light on the
+/// white plastic.
 Eigen::Vector3d ShownColour(std::uint32_t rgb) {
   Eigen::Matrix3d sensor_dn;  // A column for each LED at its brightest.
   sensor_dn << 150, 20, 12,   //

@@ -17,10 +17,11 @@
 
 namespace footing::stream_client {
 
+/// Options of a simulated person on boards.
 struct BoardsOptions {
   StageOptions stage;
   std::string hands = "none";          ///< none, move, wiimote, straps, kinect or camera.
-  std::string camera_file, frames_to;  ///< Of hands "camera": the simulated camera, and a FIFO.
+  std::string camera_file, frames_to;  ///< With hands "camera": camera file, frame FIFO.
   bool moves = false;         ///< With hands "camera": PS Moves in the fists light the spheres.
   std::string head = "none";  ///< none, or sphere: one on a cap, as a tracker sees it.
   /// A hand that is lost for a while: its Wiimote out of reach, or not seen.
@@ -37,11 +38,12 @@ struct BoardsOptions {
 /// as rendered frames for footing-camera ("camera").
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common);
 
-/// What a Wiimote in the fist of side 0 (left) or 1 feels. A copy starts from the beginning.
+/// Readings of a Wiimote in the fist of side 0 (left) or 1 (right). A copy starts from the
+/// beginning.
 SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
                                       std::uint64_t seed);
 
-/// What a Wiimote strapped there feels.
+/// Readings of a Wiimote strapped to a segment of that arm.
 SimulatedDevice::WiimoteMotion OnSegment(std::shared_ptr<const Stage> stage, int side,
                                          virtual_sensors::ArmSegment segment, std::uint64_t seed);
 
@@ -51,6 +53,7 @@ struct InsoleErrors {
   double gain_spread = 0;  ///< Standard deviation of each cell's gain.
 };
 
+/// Options of a simulated person with insoles.
 struct InsolesOptions {
   StageOptions stage;
   std::string hands = "none";  ///< none or move.
@@ -69,15 +72,16 @@ Feed InsoleFeed(std::shared_ptr<const Stage> stage, std::size_t foot, const Inso
 
 /// The subcommand boards and its flags. `options` must outlive the parsing.
 CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options);
-/// The same of insoles.
+/// Adds the subcommand for a person with insoles.
 CLI::App* AddInsolesCommand(CLI::App& app, InsolesOptions& options);
 
-/// The terrain game's synthetic players.
+/// Options of the terrain game's synthetic players.
 struct PlayersOptions {
   std::string simulation;  ///< Address of footing-sim, which the runner sees; empty: the default.
   bool pits = false;       ///< The builder lays pits, too.
 };
 
+/// Add the subcommands for the synthetic runner and the synthetic builder.
 CLI::App* AddRunnerCommand(CLI::App& app, PlayersOptions& options);
 CLI::App* AddBuilderCommand(CLI::App& app, PlayersOptions& options);
 

@@ -380,7 +380,7 @@ using sensors::kFeet;
 
 constexpr double kLoadedN = 20;
 constexpr double kReportedOutsideShare = 0.02;
-constexpr double kEdge = 0.02;  // Of the loaded samples lie beyond each end of a range.
+constexpr double kEdge = 0.02;  // Share of the loaded samples beyond each end of a range.
 constexpr double kReportedOffsetM = 0.0005;
 constexpr double kLongestS = 3600;
 

@@ -51,12 +51,12 @@ class SetupBody {
   /// tight). False when it is not known.
   bool Do(const std::string& line);
 
-  /// How the boards lie: their yaw in W, as in stream::BoardPose.
+  /// Sets how the boards lie: their yaw in W, as in stream::BoardPose.
   void Lay(double left_yaw_rad, double right_yaw_rad) { yaw_rad_ = {left_yaw_rad, right_yaw_rad}; }
 
-  /// What the board feels that lies in this place in the beginning. Times never go back.
+  /// Corner forces of the board that lies in this place in the beginning. Times never go back.
   virtual_devices::CornerForces Board(int board, double t_s);
-  /// What the limb's remote feels, in the remote's own axes.
+  /// Specific force on the limb's remote, m/s2, in the remote's own axes.
   Eigen::Vector3d Limb(int limb, double t_s);
 
  private:
@@ -90,9 +90,9 @@ class SetupBody {
   noise::Random random_{7};
 };
 
-/// Who performs a guided setup, and with which devices.
+/// Person who performs a guided setup, and the devices.
 struct SetupPersonOptions {
-  std::string interface = {};  ///< Whose devices; empty: two held remotes and two boards.
+  std::string interface = {};  ///< Interface with the devices; empty: two remotes, two boards.
   std::optional<int> boards = std::nullopt;  ///< 0 to 2; nothing: those of the interface.
   double mass_kg = 70;
   std::string rig = "main";
@@ -101,7 +101,7 @@ struct SetupPersonOptions {
   bool once = false;      ///< One setup only.
 };
 
-/// What a guided setup asked for.
+/// Record of the prompts of guided setups.
 struct SetupRecord {
   struct Asked {
     stream::SetupPrompt prompt;
@@ -119,7 +119,7 @@ class SetupPerson {
   SetupPerson(boost::asio::io_context& io, std::shared_ptr<SetupBody> body, std::string rig,
               std::shared_ptr<SetupRecord> record, std::function<void()> on_end);
 
-  /// What footingd publishes.
+  /// Takes a tick that footingd published.
   void See(const v1::Tick& tick);
 
  private:
@@ -133,8 +133,8 @@ class SetupPerson {
   const std::function<void()> on_end_;
   timer::Timer steps_;  ///< Until the three steps are over.
   timer::Timer over_;
-  std::uint64_t number_ = 0;  ///< Of the newest prompt.
-  std::string item_;          ///< Of the newest prompt; empty: no setup is under way.
+  std::uint64_t number_ = 0;  ///< Number of the newest prompt.
+  std::string item_;          ///< Item of the newest prompt; empty: no setup is under way.
 };
 
 /// The devices of the person and the body that moves them.
@@ -142,8 +142,10 @@ struct SetupPersonPlan {
   Plan plan;
   std::shared_ptr<SetupBody> body;
 };
+/// Plans the person and the devices of a guided setup.
 Result<SetupPersonPlan> PlanSetupPerson(const SetupPersonOptions& options, const Common& common);
 
+/// Options of a simulated person who follows a guided setup.
 struct RehearseOptions {
   SetupPersonOptions person;
   std::string sensor;  ///< Address of footingd, whose setup is followed; empty: the default.
@@ -163,13 +165,13 @@ std::unique_ptr<transport::Client> Watch(boost::asio::io_context& io,
                                          std::vector<std::string> channels,
                                          std::function<void(const v1::Tick&)> see);
 
-/// Which movement, and where it stands.
+/// Movement of the body, and where the body stands.
 struct StageOptions {
   std::string motion;    ///< A built-in name, or a path: .json, .bvh, .amc, .trc, .c3d.
   std::string skeleton;  ///< ASF of an AMC.
   std::optional<double> bvh_unit_m = {};
   double mass_kg = 75;
-  double height_m = 1.75;     ///< Of who performs a script; recordings have their own.
+  double height_m = 1.75;     ///< Height of the performer of a script; recordings have their own.
   bool on_boards = true;      ///< False: it may walk anywhere, and nothing is said of boards.
   bool place_boards = false;  ///< Lay the boards under the feet instead of 20 mm apart.
   double seconds = 0;         ///< A recording plays forwards and backwards for this time; 0: once.
@@ -181,7 +183,7 @@ struct Stage {
   std::vector<std::array<virtual_sensors::FootForce, virtual_sensors::kFeet>> feet;  ///< A frame.
   std::array<virtual_sensors::BoardPlace, virtual_sensors::kFeet> boards;
   double gap_m = 0.02;       ///< Between the boards' facing edges.
-  double outside_share = 0;  ///< Of loaded feet whose COP is beyond the board's sensors.
+  double outside_share = 0;  ///< Share of loaded feet with a COP beyond the board's sensors.
   bool repeats = false;      ///< Ends as it begins; goes on and on.
 
   double duration_s() const;

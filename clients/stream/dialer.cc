@@ -32,7 +32,7 @@ constexpr double kInterfaceS = 0.25;
 /// Turning rate while both hands are inclined: 5 degrees a step (gait paper, section 7).
 constexpr double kTurnPerStepRad = 5 * kPi / 180;
 constexpr double kStepsPerS = 2.4;
-/// What a player plans with of it.
+/// Share of this turning rate that a player plans with.
 constexpr double kTurnShare = 0.8;
 constexpr double kSteerAboveRad = 0.08, kSteerBelowRad = 0.03;
 /// Well above the 20 degrees at which the wrists turn.
@@ -219,7 +219,7 @@ constexpr double kLookS = 0.01;
 constexpr double kBoardGapM = 0.02;
 constexpr std::uint16_t kJumpButton = 0x0008;
 
-/// What the remote with this place among those worn feels, with an accelerometer's noise.
+/// Readings of the remote with this index among the body-worn ones, with an accelerometer's noise.
 SimulatedDevice::WiimoteMotion RemoteOf(std::shared_ptr<LiveUser> user, std::size_t index,
                                         std::uint64_t seed) {
   return [user = std::move(user), index, random = noise::Random(seed)](double t_s) mutable {
@@ -621,7 +621,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   }
 
   const DialerOptions options_;
-  const double duration_s_;  // Of motion; 0 goes on until stopped.
+  const double duration_s_;  // Duration of the motion; 0 goes on until stopped.
   const std::function<void()> on_end_;
   std::vector<SimulatedDevice> devices_;
   const std::vector<Feed> fresh_sources_;

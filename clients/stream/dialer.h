@@ -24,14 +24,14 @@
 
 namespace footing::stream_client {
 
-/// What a person in front of the picture sees of the character.
+/// Character as a person in front of the screen sees it, in W.
 struct RunnerSight {
   Eigen::Vector2d p_W_m = Eigen::Vector2d::Zero();
   double heading_rad = 0;
   double speed_mps = 0;
 };
 
-/// How the hands are swung, alternately.
+/// Alternate swing of both hands.
 struct RunnerSwing {
   double frequency_hz = 0;  ///< 0: at rest.
   double amplitude_mps2 = 0;
@@ -48,7 +48,7 @@ class Runner {
 
   void SeeTrack(const stream::Track& track);
   void See(double time_s, const RunnerSight& sight);
-  /// What the hands do at that time, which never runs back; at rest until there is something to
+  /// Swing of the hands at that time, which never runs back; at rest until there is something to
   /// see.
   RunnerSwing Want(double time_s);
 
@@ -88,7 +88,7 @@ class LiveRunner {
  public:
   explicit LiveRunner(std::uint64_t seed);
 
-  /// What footing-sim publishes of the character and its track.
+  /// Takes a tick of footing-sim with the character and its track.
   void See(const v1::Tick& tick);
   /// The hands at t_s since the motion began; a time before the last one gives the last ones.
   wrists::Hands At(double t_s);
@@ -106,6 +106,7 @@ struct RunnerPlan {
   Plan plan;
   std::shared_ptr<LiveRunner> runner;
 };
+/// Plans the two Wiimotes and the player.
 Result<RunnerPlan> PlanRunner(const Common& common);
 
 /// A synthetic user in real time: sees what footing-sim publishes of the character, its track and
@@ -119,13 +120,13 @@ class LiveUser {
            std::uint64_t seed, std::vector<users::Act> acts = {});
 
   void See(const v1::Tick& tick);
-  /// What the devices feel at t_s since the motion began; after a new connection that is 0 again.
+  /// Readings of the devices at t_s since the motion began; after a new connection that is 0 again.
   const users::Felt& At(double t_s);
 
  private:
   users::Intention Want();
 
-  /// Without a frame for this long the user sees nothing.
+  /// Time without a frame after which the user sees nothing.
   static constexpr double kBlindS = 0.5;
 
   stream::Track track_;
@@ -136,7 +137,7 @@ class LiveUser {
   users::Intention wanted_;
   double seen_s_ = -1e9;
   double time_s_ = 0;
-  double before_s_ = 0;  ///< Of the connections before this one.
+  double before_s_ = 0;  ///< Duration of the connections before this one.
   double at_s_ = 0;
 };
 
@@ -145,7 +146,7 @@ struct LiveUserPlan {
   Plan plan;
   std::shared_ptr<LiveUser> user;
 };
-/// Who the user is, as options have it.
+/// User, as the options describe them.
 struct LiveUserOptions {
   std::string interface = "wrist";
   std::string turn_by = "head";
@@ -159,6 +160,7 @@ struct LiveUserOptions {
 Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& common,
                                   std::uint64_t style_seed);
 
+/// Options of a synthetic user of one interface.
 struct UserOptions {
   std::string script = "demo";
   std::string interface = "wrist";
@@ -175,6 +177,7 @@ struct UserOptions {
 /// The subcommand user and its flags. `options` must outlive the parsing.
 CLI::App* AddUserCommand(CLI::App& app, UserOptions& options);
 
+/// Options of the connection of simulated devices to footingd.
 struct DialerOptions {
   transport::Address to;
   double rate_scale = 1;  ///< The devices' clocks run this much faster than nominal.

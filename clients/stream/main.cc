@@ -18,7 +18,7 @@ namespace {
 
 using namespace footing;  // NOLINT: main is wiring
 
-/// What the io_context is for beside the devices; `end` ends the program.
+/// Work of the io_context beside the devices; `end` ends the program.
 using End = std::function<void(const std::string& why)>;
 using Beside =
     std::function<std::unique_ptr<transport::Client>(boost::asio::io_context&, const End& end)>;

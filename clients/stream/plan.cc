@@ -31,7 +31,7 @@ constexpr double kBlendS = 0.15;
 
 using Force = std::function<Eigen::Vector3d(double t_s)>;
 
-/// What a real accelerometer adds to a synthetic motion.
+/// Adds a real accelerometer's noise to a synthetic motion.
 Force WithNoise(std::uint64_t seed, Force force) {
   return [random = noise::Random(seed), force](double t_s) mutable {
     const double sd_mps2 = wrists::SensorModel().noise_mps2;
@@ -409,7 +409,7 @@ class StayCollector {
         if (stay != nullptr) stay->lost = true;
       } else {
         statuses_[status.device()] = status;
-        // What a device is becomes known as it answers.
+        // The kind of a device becomes known as it answers.
         if (stay != nullptr) stay->status = status;
       }
     }
@@ -442,7 +442,7 @@ class StayCollector {
   }
 
   std::vector<Stay> stays_;
-  std::map<std::uint32_t, std::size_t> current_;  ///< Of a device: its newest stay.
+  std::map<std::uint32_t, std::size_t> current_;  ///< Newest stay of each device.
   std::map<std::uint32_t, v1::DeviceStatus> statuses_;
 };
 

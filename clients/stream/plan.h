@@ -14,7 +14,7 @@
 
 namespace footing::stream_client {
 
-/// What the common flags say.
+/// Values of the common flags.
 struct Common {
   std::string to;  ///< Empty: footingd's default device socket.
   std::uint64_t seed = 1;
@@ -23,7 +23,7 @@ struct Common {
   double seconds = 0;  ///< 0: the script again and again, a recording once.
 };
 
-/// What is in the Wiimotes' ports.
+/// Extensions in the Wiimotes' ports.
 struct Ports {
   bool motion_plus = false;
   bool nunchuk = false;
@@ -74,8 +74,8 @@ Result<Plan> PlanAccelerations(const std::string& left, const std::string& right
 /// One or two boards that feel recorded corners: CSV `time_s,tl_kg,tr_kg,bl_kg,br_kg`.
 Result<Plan> PlanCorners(const std::string& left, const std::string& right, const Common& common);
 
-/// What every plan is made with: the link that a flag names, seeds so that no two devices of a run
-/// share their random numbers, a Wiimote with what is in its port.
+/// Parts of every plan: the link that a flag names, seeds so that no two devices of a run share
+/// their random numbers, a Wiimote with the extension in its port.
 Result<virtual_devices::LinkQuality> ParseLink(const std::string& name);
 std::uint64_t DeviceSeed(const Common& common, std::uint64_t device);
 SimulatedDevice MakeWiimote(const Common& common, virtual_devices::LinkQuality link,
@@ -91,7 +91,7 @@ struct Table {
 /// many, a text that is not a finite number.
 Result<Table> ParseTable(const std::string& text, std::size_t columns, const std::string& origin);
 
-/// What a user of the joystick interface does: a Nunchuk's stick and a Wiimote's button.
+/// Input of a user of the joystick interface: a Nunchuk's stick and a Wiimote's button.
 struct StickState {
   double x = 0;  ///< -1 left to 1 right.
   double y = 0;  ///< -1 back to 1 front.
@@ -107,7 +107,8 @@ class StickMotion {
   /// The stick needs `blend_s` to get to its new place. `segments` not empty.
   StickMotion(std::vector<wrists::Segment> segments, double blend_s);
 
-  /// At t_s since the start; before it the first instant, after the end the last segment goes on.
+  /// State at t_s since the start; before it the first instant, after the end the last segment goes
+  /// on.
   StickState At(double t_s) const;
   double DurationSeconds() const { return duration_s_; }
 
@@ -132,7 +133,7 @@ class BuilderScript {
  public:
   BuilderScript(std::uint64_t seed, bool pits);
 
-  /// At t_s since the start; it changes over in 0.25 s. Without end: it begins again.
+  /// Grip at t_s since the start; it changes over in 0.25 s. Without end: it begins again.
   BuilderGrip At(double t_s) const;
   double duration_s() const { return duration_s_; }
 

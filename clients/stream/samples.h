@@ -8,6 +8,7 @@
 
 namespace footing::stream_client {
 
+/// A built-in file: its name and its text.
 struct SampleFile {
   std::string name;
   std::string text;

@@ -160,7 +160,7 @@ using virtual_devices::Report;
 
 namespace {
 
-/// What the host sets is not looked at.
+/// A recorded device ignores the host's settings.
 SimulatedDevice::Shown Show(const RecordedDevice&, std::int64_t) { return {}; }
 
 template <typename Remote>

@@ -89,7 +89,7 @@ class SimulatedDevice {
   const virtual_devices::Identity& identity() const;
   stream::DeviceRole role() const { return role_; }
 
-  /// What the device answers to an output report.
+  /// Answers of the device to an output report.
   std::vector<virtual_devices::Report> HandleOutput(double now_s,
                                                     std::span<const std::uint8_t> output);
   /// A feature report of `size` bytes; empty when the device refuses.
@@ -116,7 +116,7 @@ class SimulatedDevice {
   /// A line for the log when lights or rumble changed since the last call; empty otherwise.
   std::string Changes(double now_s);
 
-  /// What a person would see and feel of it.
+  /// Lights and rumble as a person would notice them.
   struct Shown {
     std::string lights;
     bool rumble = false;

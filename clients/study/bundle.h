@@ -10,6 +10,7 @@
 
 namespace footing::study::bundle {
 
+/// Options of a bundle of a study for publication.
 struct BundleOptions {
   std::string study_name;
   std::string study_folder;  ///< Has a folder for each participant.
@@ -18,9 +19,10 @@ struct BundleOptions {
   std::string version;
 };
 
+/// Contents of a written bundle.
 struct BundleReport {
   std::size_t participants = 0;
-  std::size_t trials = 0;            ///< With motion files.
+  std::size_t trials = 0;            ///< Trials with motion files.
   std::vector<std::string> remarks;  ///< Recordings that could not be read.
 };
 

@@ -374,7 +374,7 @@ Result<RecordedRanges> MeasureLive(const RangesOptions& options) {
   return MeasureRanges(console, *sensor, options.rig, options.played);
 }
 
-/// Of one person, live or from a recording.
+/// Measures the ranges of one person, live or from a recording.
 Result<ranges::Measured> MeasureOne(const RangesOptions& options) {
   if (const auto checked = Check(options); !checked) return checked.error();
   const bool live = options.recording.empty();

@@ -13,17 +13,18 @@
 
 namespace footing::study {
 
-/// What all subcommands share.
+/// Options and exit code common to all subcommands.
 struct Shared {
   bool json = false;
   int exit_code = 0;  ///< Set by the subcommand that ran.
 };
 
+/// A protocol that has been read and checked, with the tables and folder that belong to it.
 struct LoadedProtocol {
   std::string path;
   std::string text;
   plan::Protocol protocol;
-  std::string folder;  ///< Of the study's files.
+  std::string folder;  ///< Folder of the study's files.
   /// Texts of its mapping tables, by interface.
   std::map<std::string, std::string> tables = {};
   std::vector<std::string> remarks = {};  ///< On its tracks; plan::Remarks has those on the plan.
@@ -32,21 +33,23 @@ struct LoadedProtocol {
 /// Reads and checks a protocol file; its tracks must be built-in ones, its tables measured ones.
 Result<LoadedProtocol> Load(const std::string& path, const std::string& folder);
 
-/// What the journals of all participants say; a failure where there is none yet.
+/// Records from the journals of all participants; a failure where there is none yet.
 Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded);
 
-/// Prints a command's answer, one JSON object or its text, or its error; keeps the exit code.
+/// Answer of a command, as JSON and as text.
 struct Answer {
   nlohmann::ordered_json json;
   std::string text;
 };
+/// Prints a command's answer, one JSON object or its text, or its error; keeps the exit code.
 void Finish(const Result<Answer>& result, Shared& shared);
 
-/// Adds PROTOCOL and --folder.
+/// Values of PROTOCOL and --folder.
 struct ProtocolOptions {
   std::string path;
   std::string folder;
 };
+/// Adds PROTOCOL and --folder.
 void AddProtocolOptions(CLI::App& command, ProtocolOptions& options);
 
 /// Each adds subcommands to footing-study; their callbacks do the work.

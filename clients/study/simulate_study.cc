@@ -147,7 +147,7 @@ class Run {
                        "--seed", Seed(user + " " + interface)});
   }
 
-  /// What the journal says since the last look.
+  /// Reads the events that the journal has gained since the last call.
   Result<void> Follow() {
     for (const records::Event& event : tail_.ReadNew()) {
       if (event.kind != records::EventKind::kPhaseStarted) continue;

@@ -18,11 +18,11 @@ namespace footing::study::simulate {
 /// One session of a study without people, devices or waiting.
 struct SimulatedSession {
   std::string protocol_path;
-  std::string study_folder;  ///< Of this session alone; must not exist.
+  std::string study_folder;  ///< Folder of this session alone; must not exist.
   plan::Session session;
-  std::uint64_t seed = 1;        ///< Of the participant's style and answers.
-  bool real_time = false;        ///< On the host's time, as a live session: its latencies are real.
-  std::string turn_by = "head";  ///< What turns with the interface leg: head, feet or trunk.
+  std::uint64_t seed = 1;        ///< Seed of the participant's style and answers.
+  bool real_time = false;        ///< Runs on the host's time, so that latencies are real.
+  std::string turn_by = "head";  ///< Turn source of the interface leg: head, feet or trunk.
 };
 
 /// Runs footingd, footing-sim, footing-stream and `footing-study run --unattended` as processes of
@@ -32,7 +32,7 @@ struct SimulatedSession {
 /// ever. Failure with what the session said last; then its files are still there.
 Result<void> Simulate(const SimulatedSession& simulated);
 
-/// What another program appends to a journal.
+/// Reader of the lines that another program appends to a journal.
 class JournalTail {
  public:
   explicit JournalTail(std::string path) : path_(std::move(path)) {}
@@ -65,7 +65,7 @@ class Child {
 
   /// The exit code once it has ended, by itself or by a signal (128 + signal); does not wait.
   std::optional<int> ExitCode();
-  /// At once, without a goodbye; returns when it is gone.
+  /// Kills the process at once; returns when it is gone.
   void Kill();
 
  private:
@@ -74,10 +74,11 @@ class Child {
   std::optional<int> exit_code_;
 };
 
+/// Options of a simulated study of several sessions.
 struct StudyOptions {
   std::string protocol_path;
   std::string protocol_text;
-  std::string study_folder;  ///< Of simulated sessions alone.
+  std::string study_folder;  ///< Folder of simulated sessions alone.
   std::vector<plan::Session> sessions;
   std::uint64_t seed = 1;
   int jobs = 1;                  ///< Sessions at once, each on about one processor.
@@ -88,7 +89,7 @@ struct StudyOptions {
 /// One participant's session in the folder.
 struct SessionTime {
   std::string participant;
-  double simulated_s = 0;  ///< From the first event to the last one.
+  double simulated_s = 0;  ///< Time from the first event to the last one.
   bool before = false;     ///< It was there already.
 };
 
@@ -97,7 +98,7 @@ struct SessionTime {
 /// folder has the session of a person.
 Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options);
 
-/// How far a simulated study is, when one of its sessions has just ended.
+/// Progress of a simulated study when one of its sessions has just ended.
 struct StudyProgress {
   int ended = 0, all = 0;  ///< Sessions of this run.
   int at_once = 1;         ///< As many run beside each other.

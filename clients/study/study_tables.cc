@@ -74,7 +74,7 @@ std::string Cell(double value, int decimals) {
 
 std::string YesOrNo(bool yes) { return yes ? "yes" : "no"; }
 
-/// What a survey's column begins with: "wrist", at the end "final_wrist", "final" of the whole
+/// First part of a survey column's name: "wrist", at the end "final_wrist", "final" of the whole
 /// study.
 template <typename Answered>
 std::string About(const Answered& one) {

@@ -51,14 +51,14 @@ DocumentedTable SurveyTable(const std::vector<records::Records>& people, const P
 DocumentedTable TrialsTable(const std::vector<records::Records>& people, const ParticipantKey& key,
                             const std::map<const records::Trial*, std::string>& file_of);
 
-/// What a recording says of its trial, from the trial's first frame on; only devices that have a
-/// role. InvalidData when the recording has no marks of a trial, or no frame of it.
+/// Motion that a recording has of its trial, from the trial's first frame on; only devices that
+/// have a role. InvalidData when the recording has no marks of a trial, or no frame of it.
 Result<bids::RecordedMotion> ReadTrial(const recording::RecordedSession& session,
                                        const records::Trial& trial);
 
-/// What footing-sim ran with (EffectiveConfig of the protocol) without what may name a person, a
-/// place or a file: addresses, paths, the client that gave a table, and of a measured table whom
-/// and when it was measured of. Null: the text is not such a config.
+/// Configuration of footing-sim (EffectiveConfig of the protocol) without parts that may name a
+/// person, a place or a file: addresses, paths, the client that gave a table, and the person and
+/// date of a measured table. Null: the text is not such a config.
 nlohmann::ordered_json AnonymousConfig(const std::string& json);
 
 }  // namespace footing::study::bundle

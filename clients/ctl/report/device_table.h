@@ -26,6 +26,7 @@ std::string RigRole(const stream::DeviceStatus& device);
 /// "87 %", "12 % LOW", or "-" while unknown.
 std::string Battery(const stream::DeviceStatus& device);
 
+/// Setup of every rig, with all items, as JSON.
 nlohmann::ordered_json SetupToJson(const std::vector<stream::RigSetup>& rigs);
 /// Every item with its date, residual and whether it is to be redone.
 std::string SetupTable(const std::vector<stream::RigSetup>& rigs);
@@ -42,6 +43,7 @@ struct Boards {
   /// Lost ones with a role that no other device has taken.
   std::vector<stream::DeviceStatus> lost;
 };
+/// Boards among the devices.
 Boards BoardsOf(const std::vector<stream::DeviceStatus>& devices);
 
 /// Those of `now` whose rig or role is another one than `before`.

@@ -299,7 +299,7 @@ using stream::DeviceStatus;
 constexpr std::uint64_t kEnoughReports = 300;  // Three seconds: statistics mean nothing before.
 constexpr double kPoorRateHz = 50;             // All of our devices send 60 or more.
 constexpr double kPoorJitterMs = 15;           // A good link has 6, a free hop 2.3.
-// Of the intervals: of 1000, a good link has at most one longer than 50 ms, a poor one 30 to 45.
+// Shares of long intervals: of 1000, a good link has at most one over 50 ms, a poor one 30 to 45.
 constexpr double kPoorGapsShare = 5e-3;
 constexpr double kSomeGapsShare = 1e-3;
 constexpr std::uint64_t kStrayGaps = 5;       // Fewer are stalls of the host.

@@ -9,16 +9,18 @@
 
 namespace footing::ctl::doctor {
 
+/// Weight of a finding, heaviest first.
 enum class Severity { kError, kWarning, kNote };
 
 const char* Name(Severity severity);
 
+/// One problem that the doctor found, and its remedy.
 struct Finding {
   std::string id;  ///< Stable: "node_without_permission".
   Severity severity = Severity::kNote;
   std::string what;
   std::string where;   ///< A serial, a file, an adapter.
-  std::string remedy;  ///< What to type or do; never empty.
+  std::string remedy;  ///< Command to type or step to take; never empty.
 };
 
 /// Everything found, errors first; within a severity in the order of the checks.
@@ -39,7 +41,7 @@ inline constexpr const char* kIgnoreSpecialDrivers =
     "echo 'options hid ignore_special_drivers=1' | sudo tee /etc/modprobe.d/footing.conf && sudo "
     "update-initramfs -u, then reboot";
 
-/// What a check found at one place.
+/// Finding of a check at one place.
 struct Symptom {
   Severity severity = Severity::kError;
   std::string what;
@@ -55,8 +57,8 @@ struct Check {
 
 std::vector<Check> HostChecks();       ///< Processes, rights, kernel drivers.
 std::vector<Check> BluetoothChecks();  ///< Adapters, BlueZ, pairing.
-std::vector<Check> DeviceChecks();     ///< What footingd says of each device.
-std::vector<Check> SetupChecks();      ///< What is to be done or redone.
+std::vector<Check> DeviceChecks();     ///< Status of each device, from footingd.
+std::vector<Check> SetupChecks();      ///< Setup steps to do or redo.
 
 /// The device is attached.
 bool IsThere(const stream::DeviceStatus& device);

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::ordered_json;
 using stream::DeviceStatus;
 
-constexpr double kFullCornerKg = 40;   // Of 150 kg a board, evenly on four cells.
+constexpr double kFullCornerKg = 40;   // Full board: 150 kg, evenly on four cells.
 constexpr double kFullForceMps2 = 40;  // A Wiimote's range ends there.
 constexpr int kBarCells = 20;
 

@@ -14,7 +14,7 @@
 
 namespace footing::ctl::display {
 
-/// What watch shows: the newest status and samples of every device. A plain value.
+/// Content of the watch screen: the newest status and samples of every device. A plain value.
 struct Live {
   struct Newest {
     std::optional<stream::MotionSample> motion;
@@ -28,7 +28,7 @@ struct Live {
   std::string link;                           ///< How the connection stands.
   bool lost = false;                          ///< It does not stand: what is below is old.
   std::optional<stream::ServerStats> server;  ///< How it fares.
-  std::string notice;                         ///< What slows the server; empty: nothing.
+  std::string notice;                         ///< Cause that slows the server; empty: none.
 
   void Take(const stream::MotionSample& sample);
   void Take(const stream::NunchukSample& sample);

@@ -9,21 +9,24 @@
 /// in.
 namespace footing::ctl::pairing {
 
+/// Device that is to be paired.
 enum class Kind { kWiimote, kBoard, kMove };
 
 std::optional<Kind> KindNamed(const std::string& name);
 const char* Name(Kind kind);
 
+/// Bluetooth of the host, as far as pairing depends on it.
 struct Host {
   std::string adapter;        ///< "hci0"; empty when there is none.
   std::string bluez_version;  ///< "5.66"; empty when bluetoothctl is not there.
-  bool may_fail = false;      ///< Of the versions that fail to pair Nintendo's devices.
+  bool may_fail = false;      ///< Version known to fail to pair Nintendo's devices.
 };
 
+/// One step of a pairing.
 struct Step {
-  std::string say;       ///< What the person is to do or to know.
-  std::string run;       ///< What is typed into bluetoothctl or a shell; empty when nothing is.
-  std::string wait_for;  ///< What shows that it worked; empty when nothing is to be awaited.
+  std::string say;       ///< Instruction or remark for the person.
+  std::string run;       ///< Input for bluetoothctl or a shell; empty when there is none.
+  std::string wait_for;  ///< Output that shows success; empty when there is none to await.
 };
 
 /// The whole way from the box to the device in footingd. ADDRESS stands for the device's own, as

@@ -9,9 +9,10 @@
 #include "common/stream/device.h"
 #include "common/stream/setup.h"
 
-/// What the doctor knows about a host, as plain values. Nothing here was looked up: the caller did.
+/// Facts about a host that the doctor examines, as plain values. The caller looks them up.
 namespace footing::ctl::doctor {
 
+/// A user of the host, with their groups.
 struct User {
   std::string name;
   std::uint32_t uid = 0;
@@ -31,6 +32,7 @@ struct HidDevice {
   std::uint32_t node_mode = 0;  ///< Permission bits.
 };
 
+/// A Bluetooth adapter.
 struct Adapter {
   std::string name;  ///< "hci0".
   bool blocked_soft = false;
@@ -49,9 +51,10 @@ struct KnownDevice {
   bool connected = false;
 };
 
+/// All facts that the doctor's checks read.
 struct Facts {
   User user;
-  /// Of each running footingd: process number and whose it is.
+  /// Running footingd processes: process number and owner.
   std::map<int, User> daemons;
   std::optional<std::uint32_t> footing_gid;  ///< Group "footing", where there is one.
   bool user_listed_in_group = false;  ///< In the group's file, perhaps not yet in the session.

@@ -19,7 +19,7 @@
 /// how long a segment is, the paper does not say.
 namespace footing::game {
 
-/// What the builder does with the device of the role editor.
+/// Input of the builder: the device of the role editor.
 struct Hand {
   bool known = false;    ///< False: nothing has come from it for a while; the ground stays level.
   double roll_rad = 0;   ///< Left side higher is positive: inclined to the right.
@@ -32,7 +32,7 @@ using track::Piece;
 
 /// Inclinations within this are level, rad: nobody holds a hand quite still.
 inline constexpr double kDeadZoneRad = 0.105;  // 6 degrees.
-/// At this inclination and beyond a property is at its limit, rad; between, it grows evenly.
+/// Inclination from which on a property is at its limit, rad; below, it grows evenly.
 inline constexpr double kFullRad = 0.785;  // 45 degrees: the wrist goes no further at ease.
 
 /// The piece that the hand asks for at the track's end: within the paper's limits, and one that an
@@ -41,15 +41,15 @@ inline constexpr double kFullRad = 0.785;  // 45 degrees: the wrist goes no furt
 /// length is the way of about 1 s at `speed_mps`, within 2 and 4 m. `track` is not empty.
 Piece Held(const Hand& hand, const stream::Track& track, double speed_mps, bool pits);
 
-/// When a piece is laid: as soon as less track lies ahead of the runner than it covers in 3 s (6 to
-/// 12 m), so that ground always lies ahead and the builder still decides late. What the hand holds
-/// then is laid, as the ghost showed it.
+/// Decides when a piece is laid: as soon as less track lies ahead of the runner than three seconds
+/// of running (6 to 12 m), so that ground always lies ahead and the builder still decides late.
+/// The piece that the hand holds then is laid, as the ghost showed it.
 class Builder {
  public:
-  /// What is known of the runner and the track, at one instant.
+  /// State of the runner and the track at one instant.
   struct Sight {
     double time_s = 0;      ///< Simulation time.
-    double distance_m = 0;  ///< Of the runner, along the track.
+    double distance_m = 0;  ///< Runner's distance along the track.
     double speed_mps = 0;
     const stream::Track& track;  ///< As published last; not empty.
   };
@@ -63,7 +63,7 @@ class Builder {
   /// A new track: what was on its way is void.
   void Restart();
 
-  /// What would be laid now.
+  /// Segment that would be laid now.
   const Piece& ghost() const { return ghost_; }
   std::uint32_t refused() const { return refused_; }
 
@@ -71,7 +71,7 @@ class Builder {
   bool pits_;
   Piece ghost_;
   std::optional<double> sent_s_;     ///< When a piece went out that has not shown yet.
-  std::uint64_t sent_revision_ = 0;  ///< Of the track at that time.
+  std::uint64_t sent_revision_ = 0;  ///< Revision of the track at that time.
   bool plain_ = false;
   std::uint32_t refused_ = 0;
 };
@@ -79,8 +79,8 @@ class Builder {
 /// How much track is kept ahead of a runner of that speed, m.
 double LookAheadM(double speed_mps);
 
-/// What footing-sim publishes of a round: all that scores depend on. A recording holds the same.
-/// A failure as its event reports it.
+/// Failure as its event reports it. This and the following facts of a round are published by
+/// footing-sim; scores depend on nothing else, and a recording holds the same.
 struct Fault {
   std::uint64_t number = 0;
   stream::FailureCause cause = stream::FailureCause::kUnspecified;
@@ -103,8 +103,8 @@ struct Stretch {
 struct RoundFacts {
   std::uint64_t trial_number = 0;
   stream::TrialPhase phase = stream::TrialPhase::kUnspecified;
-  double start_m = 0;     ///< Of the start line.
-  double end_m = 0;       ///< Of the track, so far.
+  double start_m = 0;     ///< Position of the start line.
+  double end_m = 0;       ///< End of the track, so far.
   double farthest_m = 0;  ///< Along the track.
   double time_s = 0;
   std::vector<Stretch> laid;
@@ -130,6 +130,7 @@ class Collector {
   std::map<std::string, RoundFacts> facts_;  ///< By id of the trial.
 };
 
+/// Options of a terrain game. The players change parts after every round.
 struct GameOptions {
   std::string host = "footing-game";
   std::string id = "game";                           ///< Prefix of the trials' ids.
@@ -137,7 +138,7 @@ struct GameOptions {
   int rounds = 2;
   double round_s = 60;
   double countdown_s = 5;
-  double pause_s = 8;  ///< To change the controllers over.
+  double pause_s = 8;  ///< Pause in which the players swap controllers.
   bool pits = false;
 };
 
@@ -150,10 +151,10 @@ struct Frame {
   stream::TrialState trial;
 };
 
-/// What is to be sent to footing-sim.
+/// Commands to send to footing-sim.
 struct Orders {
   std::string start_trial;      ///< Id; empty: none.
-  std::string track = "build";  ///< Of start_trial.
+  std::string track = "build";  ///< Track of start_trial.
   std::string stop_trial;
   std::optional<Piece> append;
   bool publish = false;  ///< game() has changed enough to be shown.
@@ -192,17 +193,17 @@ class Director {
   double until_s_ = 0;    ///< Its end.
   bool trial_seen_ = false;
   double asked_s_ = -1e9;  ///< When the trial's end was asked for.
-  double time_s_ = 0;      ///< Of the last frame.
+  double time_s_ = 0;      ///< Simulation time of the last frame.
   double published_s_ = -1e9;
 };
 
 /// Points, from published facts alone. The paper had no score; docs/game.md has the rules.
-/// Of the runner.
+/// Points of the runner.
 inline constexpr double kPointsPerM = 1;
 inline constexpr double kPointsPerFailure = -5;
 inline constexpr double kPointsPerDifficulty = 3;
-/// Of the builder, for the first failure on one of their segments: a fall, and leaving the ribbon.
-/// Pits are not part of the paper's game, and easier to lay than to clear.
+/// Points of the builder for the first failure on one of their segments: a fall, and leaving the
+/// ribbon. Pits are not part of the paper's game, and easier to lay than to clear.
 inline constexpr double kPointsPerFall = 10;
 inline constexpr double kPointsPerExit = 8;
 inline constexpr double kPointsPerPit = 5;

@@ -16,10 +16,10 @@ namespace footing::skeleton {
 struct Decoded {
   Skeleton skeleton;
   Dialect dialect = Dialect::kFooting;
-  std::int64_t arrived_ns = 0;  ///< Of its first joint.
+  std::int64_t arrived_ns = 0;  ///< Arrival of its first joint, monotonic.
 };
 
-/// What came in, since the start.
+/// Counts of decoded input since the start.
 struct DecoderCounts {
   std::uint64_t messages = 0;
   std::uint64_t joints = 0;
@@ -46,7 +46,7 @@ class Decoder {
   void Flush(std::int64_t now_ns, std::vector<Decoded>& complete);
 
   const DecoderCounts& counts() const { return counts_; }
-  /// What a message of no dialect was, the last time; for a person.
+  /// Text on the last message of no known dialect.
   const std::string& last_problem() const { return last_problem_; }
   /// The first problem of each kind since the last call.
   std::vector<std::string> TakeProblems();
@@ -90,10 +90,10 @@ class Decoder {
   DialectOptions options_;
   VmcPose vmc_;
   std::vector<Frame> frames_;
-  std::int32_t footing_user_ = 0;  // Of the packet's last head.
+  std::int32_t footing_user_ = 0;  // User in the packet's last head message.
   DecoderCounts counts_;
   std::string last_problem_;
-  std::array<bool, 5> reported_{};  // By Problem.
+  std::array<bool, 5> reported_{};  // Indexed by Problem.
   std::vector<std::string> problems_;
 };
 

@@ -153,7 +153,7 @@ std::string JointMessage(Dialect dialect, const Skeleton& skeleton, std::size_t 
       return osc::WriteMessage("/joint", arguments);
     }
     case Dialect::kKinectSdk2: {
-      // What this dialect calls a foot is its tip.
+      // A foot in this dialect is the tip of the foot.
       const std::string_view ankle = name == "l_foot"   ? "l_ankle"
                                      : name == "r_foot" ? "r_ankle"
                                                         : name;
@@ -201,8 +201,8 @@ std::vector<std::string> Encode(Dialect dialect, const DialectOptions& options,
 namespace {
 
 constexpr std::size_t kCertain = 10;  // Frames; the first one may have begun before this program.
-constexpr std::size_t kMostBonesOfAFrame = 128;  // Of 55: a sender without T and without Hips.
-constexpr std::size_t kNamed = 6;                // Of the bones that arrived.
+constexpr std::size_t kMostBonesOfAFrame = 128;  // A humanoid has 55; more: no T, no Hips.
+constexpr std::size_t kNamed = 6;                // Bones named in the message.
 
 /// Parents before their children; -1: the root. Without a `link` nothing that hangs on it is known;
 /// bones of the trunk may be left out.

@@ -14,11 +14,12 @@
 #include "clients/skeleton/tracking/joint_set.h"
 #include "clients/skeleton/tracking/osc.h"
 
-/// What programs that send skeletons by OSC mean by their messages (docs/skeleton.md has each in
-/// bytes). Read from the sources of Sensebloom/OSCeleton, Zillode/OSCeleton-OpenNI and
-/// Zillode/OSCeleton-KinectSDK2; the Virtual Motion Capture protocol from its specification.
+/// OSC dialects of programs that send skeletons (docs/skeleton.md has each in bytes). Read from the
+/// sources of Sensebloom/OSCeleton, Zillode/OSCeleton-OpenNI and Zillode/OSCeleton-KinectSDK2; the
+/// Virtual Motion Capture protocol from its specification.
 namespace footing::skeleton {
 
+/// Dialect of a sender, with the addresses and type tags of its messages.
 enum class Dialect : std::uint8_t {
   kSensebloom,  ///< /joint ,sifff
   kQuartz,      ///< /joint/NAME/USER ,fff
@@ -29,10 +30,11 @@ enum class Dialect : std::uint8_t {
 };
 inline constexpr std::size_t kDialects = 6;
 
+/// Name of a dialect on the command line, and the dialect of a name.
 std::string_view NameOf(Dialect dialect);
 std::optional<Dialect> DialectOf(std::string_view name);
 
-/// What a dialect's three numbers are.
+/// Unit of a dialect's three coordinates.
 enum class Units : std::uint8_t {
   kOfDialect,   ///< Normalised for kSensebloom and kQuartz, metres for kFooting and kVmc, else mm.
   kNormalised,  ///< OSCeleton's: x = (1280 - X)/2560, y = (960 - Y)/1920, z = Z/1280, in mm.
@@ -41,10 +43,11 @@ enum class Units : std::uint8_t {
   kMetres,
 };
 
+/// Name of a unit on the command line, and the unit of a name.
 std::string_view NameOf(Units units);
 std::optional<Units> UnitsOf(std::string_view name);
 
-/// How a sender was started; OSCeleton's -mx, -my, -mz and -ox, -oy, -oz.
+/// Settings with which a sender was started; OSCeleton's -mx, -my, -mz and -ox, -oy, -oz.
 struct DialectOptions {
   Units units = Units::kOfDialect;
   Eigen::Vector3d factor = Eigen::Vector3d::Ones();  ///< Not 0.
@@ -71,7 +74,7 @@ Eigen::Vector3d FromCamera(Dialect dialect, const DialectOptions& options,
 std::vector<std::string> Encode(Dialect dialect, const DialectOptions& options,
                                 const Skeleton& skeleton);
 
-/// What one VMC message did.
+/// Outcome of one VMC message.
 struct VmcStep {
   enum class Taken : std::uint8_t {
     kTaken,    ///< Used, or nothing that is needed.

@@ -30,9 +30,10 @@ enum class Joint : std::uint8_t {
 };
 inline constexpr std::size_t kJoints = 15;
 
+/// Index of a joint in arrays of all joints.
 constexpr std::size_t Index(Joint joint) { return static_cast<std::size_t>(joint); }
 
-/// In the names of OSCeleton: "head", "l_shoulder", ...
+/// Names of the joints in OSCeleton: "head", "l_shoulder", ...
 inline constexpr std::array<std::string_view, kJoints> kJointNames = {
     "head",  "neck",  "l_shoulder", "r_shoulder", "l_elbow", "r_elbow", "l_hand", "r_hand",
     "torso", "l_hip", "r_hip",      "l_knee",     "r_knee",  "l_foot",  "r_foot"};
@@ -40,7 +41,7 @@ inline constexpr std::array<std::string_view, kJoints> kJointNames = {
 /// The joint on the other side of the body; itself for those in the middle.
 Joint Mirrored(Joint joint);
 
-/// Where a joint is in the camera's frame K: x to the camera's left, y up, z away from it, right
+/// Position of a joint in the camera's frame K: x to the camera's left, y up, z away from it, right
 /// handed, metres. A person who faces the camera has the left hand at negative x.
 struct JointReading {
   Eigen::Vector3d p_K_m = Eigen::Vector3d::Zero();
@@ -56,7 +57,7 @@ struct Skeleton {
   std::optional<std::int64_t> sequence;
   std::optional<std::int64_t> sent_ns;  ///< The sender's own time of the exposure.
   bool unix_time = false;               ///< sent_ns counts from 1970, not from the sender's start.
-  /// From the ankles to the toes, both feet added up, where the sender has toes.
+  /// Sum of both vectors from ankle to toes, K, where the sender has toes.
   std::optional<Eigen::Vector3d> toes_K_m;
 
   JointReading& operator[](Joint joint) { return joints[Index(joint)]; }
@@ -80,16 +81,16 @@ void FillTrunk(Skeleton& skeleton);
 /// ears.
 class JointSet {
  public:
-  /// What Add did with a name.
+  /// Outcome of Add for a name.
   enum class Taken : std::uint8_t {
     kUnknown,  ///< No name of a joint.
-    kBeside,   ///< Of a joint that the 15 do without, or that a better name has given.
+    kBeside,   ///< Names a joint outside the 15, or one that a better name has given.
     kAdded,
     kRepeated,  ///< The same name was added before: nothing is changed.
   };
 
   Taken Add(std::string_view name, const JointReading& reading);
-  /// With what follows from neighbours.
+  /// Skeleton with the joints that follow from their neighbours.
   Skeleton Finish() const;
   /// How many of the 15 have been given by their best name.
   std::size_t best() const;

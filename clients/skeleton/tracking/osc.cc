@@ -175,7 +175,7 @@ class Reader {
   Bytes bytes_;
   Packet& packet_;
   std::size_t at_ = 0;
-  std::size_t end_ = 0;  // Of the message at hand.
+  std::size_t end_ = 0;  // End of the current message in bytes_.
 };
 
 constexpr std::int64_t kUnixInNtpS = 2'208'988'800;  // 1970 in seconds since 1900.
@@ -212,7 +212,7 @@ std::int64_t ToUnixNs(TimeTag tag) {
   const auto whole = static_cast<std::int64_t>(tag.ntp >> 32);
   const std::uint64_t part = tag.ntp & 0xFFFF'FFFF;
   const std::int64_t era_s = whole < (1ll << 31) ? static_cast<std::int64_t>(kEraS) : 0;
-  // What rounds up to the next second stays in its own: after the last one comes another era.
+  // A fraction never rounds up to the next second: after the last second comes another era.
   const auto rest_ns =
       std::min(static_cast<std::int64_t>((part * 1'000'000'000ull + (1ull << 31)) >> 32),
                kNanosecondsPerSecond - 1);

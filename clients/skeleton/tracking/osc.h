@@ -16,13 +16,13 @@ namespace footing::osc {
 
 using Bytes = std::span<const std::uint8_t>;
 
-inline constexpr std::size_t kMostPacketBytes = 65'507;  ///< Of one UDP datagram over IPv4.
-inline constexpr std::size_t kMostMessages = 256;        ///< Of a packet, all bundles together.
-inline constexpr std::size_t kMostArguments = 32;        ///< Of a message.
+inline constexpr std::size_t kMostPacketBytes = 65'507;  ///< Largest UDP datagram over IPv4.
+inline constexpr std::size_t kMostMessages = 256;  ///< Messages in a packet, all bundles together.
+inline constexpr std::size_t kMostArguments = 32;  ///< Arguments of a message.
 inline constexpr std::size_t kMostAddressBytes = 128;
 inline constexpr int kDeepestBundle = 4;  ///< Bundles inside of bundles.
 
-/// What a bundle begins with, its end included.
+/// First bytes of a bundle, with the terminating NULs.
 inline constexpr std::string_view kBundle("#bundle\0", 8);
 
 /// NTP time: seconds since 1900-01-01 in the upper half, parts of 2^-32 s in the lower.
@@ -33,12 +33,12 @@ struct TimeTag {
   bool operator==(const TimeTag&) const = default;
 };
 
-/// From and to nanoseconds since 1970, to the nearest. NTP seconds start again at 0 in 2036: tags
-/// before 1968 are taken as after 2036.
+/// Converts from and to nanoseconds since 1970, to the nearest. NTP seconds start again at 0 in
+/// 2036: tags before 1968 are taken as after 2036.
 TimeTag ToTimeTag(std::int64_t unix_ns);
 std::int64_t ToUnixNs(TimeTag tag);
 
-/// What has no bytes of its own: N and I.
+/// Arguments without bytes of their own: type tags N and I.
 struct Nil {
   bool operator==(const Nil&) const = default;
 };

@@ -51,7 +51,7 @@ namespace {
 // all limbs is 0.21 of the height, so somebody of 0.86 m has the least.
 constexpr double kShortestM = 0.18;
 constexpr double kLongestM = 0.65;
-constexpr double kMemoryFrames = 90;  // Of the running means: 3 s at 30 Hz.
+constexpr double kMemoryFrames = 90;  // Length of the running means: 3 s at 30 Hz.
 constexpr double kLeastFrames = 30;   // Before a mean says anything.
 // Hands and bent knees are in front of the shoulders by 0.10 to 0.15 m on average (four recorded
 // people); less than this says nothing.

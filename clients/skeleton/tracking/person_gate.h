@@ -10,6 +10,7 @@
 
 namespace footing::skeleton {
 
+/// A bone between two joints.
 struct Bone {
   Joint near;
   Joint far;  ///< The one farther from the trunk.
@@ -54,7 +55,7 @@ class BoneLengths {
   std::array<History, kBones> histories_;
 };
 
-/// What is wrong with all that comes from one person's skeleton.
+/// Fault common to all joints of one person's skeleton.
 enum class Fault : std::uint8_t {
   kNone,
   kMillimetres,  ///< The bones are a thousand times too long.
@@ -78,13 +79,14 @@ struct Gated {
   Skeleton skeleton;
   std::array<Verdict, kJoints> verdicts{};
   Fault fault = Fault::kNone;
-  std::size_t inferred = 0;  ///< Of the joints taken.
+  std::size_t inferred = 0;  ///< Joints taken with a confidence below kTrackedFrom.
 };
 
-/// What of a person's skeleton can be true. Joints are dropped when a bone is more than a quarter
-/// off the person's own running median (2.5 to 8 % of Kinect frames have such a bone), or when they
-/// moved faster than 6 m/s, unless they stay there. Whole skeletons are dropped while their scale
-/// or their up is wrong, or while left and right do not fit knees and hands. A plain value.
+/// Plausibility filter for one person's skeletons. Joints are dropped when a bone is more than a
+/// quarter off the person's own running median (2.5 to 8 % of Kinect frames have such a bone), or
+/// when they moved faster than 6 m/s, unless they stay there. Whole skeletons are dropped while
+/// their scale or their up is wrong, or while left and right do not fit knees and hands. A plain
+/// value.
 class PersonGate {
  public:
   static constexpr double kBoneTolerance = 0.25;
@@ -114,7 +116,7 @@ class PersonGate {
   double up_ = 1;       // Running mean of the trunk's upward part, -1 to 1.
   double front_m_ = 0;  // Running mean of how far knees and hands lie in front.
   double away_ = 0;     // Running mean of the part of "ahead" that points away from the camera.
-  double weight_ = 0;   // Of these means, in frames.
+  double weight_ = 0;   // Weight of these means, frames.
 };
 
 }  // namespace footing::skeleton

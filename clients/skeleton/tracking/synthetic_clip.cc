@@ -71,7 +71,7 @@ namespace {
 
 constexpr double kRateHz = 30;
 constexpr double kStandS = 3;
-constexpr double kPartS = 3;  // Of waving, raising and squatting.
+constexpr double kPartS = 3;  // Duration of waving, raising and squatting each.
 constexpr double kAwayM = 2.4, kCameraHeightM = 1;
 constexpr double kUpperArmM = 0.29, kForearmM = 0.31, kThighM = 0.42, kShankM = 0.42;
 constexpr double kAnkleM = 0.08, kHalfHipM = 0.09, kHalfShoulderM = 0.18;

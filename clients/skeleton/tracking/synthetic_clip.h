@@ -10,6 +10,7 @@
 
 namespace footing::skeleton {
 
+/// One frame of a clip.
 struct ClipFrame {
   std::int64_t time_ns = 0;  ///< Since the first frame.
   Skeleton skeleton;

@@ -91,8 +91,8 @@ bool IsWhole(const Skeleton& skeleton) {
   return skeleton[Joint::kNeck].present();
 }
 
-/// Of the angle within which a person by whose left and right the camera is behind has swapped
-/// sides. Somebody who stands sideways may be right.
+/// Cosine of the angle within which a person by whose left and right the camera is behind has
+/// swapped sides. Somebody who stands sideways may be right.
 constexpr double kBehindCosine = 0.5;
 
 std::string Number(double value) { return std::to_string(static_cast<int>(std::lround(value))); }

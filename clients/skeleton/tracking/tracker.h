@@ -36,7 +36,7 @@ struct Observation {
   std::optional<std::int64_t> sequence;
   std::int64_t exposed_ns = 0, arrived_ns = 0;  ///< Monotonic, of this host.
   std::array<JointObservation, kJoints> joints;
-  Eigen::Isometry3d X_WK = Eigen::Isometry3d::Identity();  ///< By which they are in W.
+  Eigen::Isometry3d X_WK = Eigen::Isometry3d::Identity();  ///< Pose of K, which puts them in W.
 };
 
 /// Standard deviations of a tracked joint: jitter of recorded Kinect v2 joints (2 to 4 mm between
@@ -55,11 +55,11 @@ Observation Observe(const Skeleton& skeleton, const Eigen::Isometry3d& X_WK);
 /// observation's (docs/protocol.md).
 stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_ns);
 
-/// Where the camera is in W and where it looks.
+/// Pose of the camera in W.
 struct CameraPlace {
-  Eigen::Vector3d p_W_m{2.5, 0, 1};  ///< Of K's origin, above the boards' surface.
+  Eigen::Vector3d p_W_m{2.5, 0, 1};  ///< Origin of K in W, above the boards' surface.
   double yaw_rad =
-      3.141592653589793;  ///< Of its look about W's z; 0 looks along x, pi at a person.
+      3.141592653589793;  ///< Viewing direction about W's z; 0 looks along x, pi at a person.
   double pitch_rad = 0;   ///< Upwards positive.
   double roll_rad = 0;    ///< Its left side up is positive.
 };
@@ -70,7 +70,7 @@ Eigen::Isometry3d ToPose(const CameraPlace& place);
 /// A place found from a person who stands on the boards.
 struct StandingFit {
   CameraPlace place;
-  double lean_rad = 0;   ///< Of the trunk against the camera's up: its tilt, or the person's.
+  double lean_rad = 0;   ///< Trunk against the camera's up: the camera's tilt, or the person's.
   double scatter_m = 0;  ///< Standard deviation of the middle of the feet.
 };
 
@@ -78,7 +78,7 @@ inline constexpr double kStandingS = 2;
 inline constexpr std::size_t kLeastStandingFrames = 10;  ///< However long they take.
 inline constexpr double kMostLeanRad = 0.26;             ///< 15 degrees.
 inline constexpr double kMostScatterM = 0.03;
-inline constexpr double kAnkleHeightM = 0.08;  ///< Of an ankle's centre above the sole.
+inline constexpr double kAnkleHeightM = 0.08;  ///< Height of an ankle's centre above the sole.
 
 /// The place of a camera from frames of a person who stands still on the boards, facing along W's
 /// x: left is where shoulders and hips say, the middle of the ankles is above W's origin. Pitch and
@@ -89,9 +89,10 @@ inline constexpr double kAnkleHeightM = 0.08;  ///< Of an ankle's centre above t
 Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPlace& known,
                                 bool by_camera = true);
 
-/// How old an exposure is by the sender's own time. A sender on this host, or with a synchronised
-/// clock, gives it at once. Of any other clock only differences mean something: the fastest packet
-/// of the last 10 to 20 s is taken to have needed `latency`, the others longer. A plain value.
+/// Estimates the age of an exposure by the sender's own time. A sender on this host, or with a
+/// synchronised clock, gives it at once. Of any other clock only differences mean something: the
+/// fastest packet of the last 10 to 20 s is taken to have needed `latency`, the others longer. A
+/// plain value.
 class SenderClock {
  public:
   static constexpr std::int64_t kOldestNs = 500'000'000;  ///< Older ones have another clock.
@@ -109,29 +110,31 @@ class SenderClock {
 
   std::int64_t latency_ns_;
   std::int64_t window_began_ns_ = 0;
-  std::int64_t least_ns_ = kNone, least_before_ns_ = kNone;  // Of this window, of the last one.
+  std::int64_t least_ns_ = kNone, least_before_ns_ = kNone;  // Minimum of this and last window.
 };
 
+/// Options of a tracker.
 struct TrackerOptions {
   DialectOptions dialect = {};
   CameraPlace camera = {};
   bool stand = false;  ///< Find the camera's place from the person; nothing is published before.
   std::optional<std::int32_t> user = {};  ///< Only this person; none: who was seen first and stays.
-  std::int64_t latency_ns = 67'000'000;   ///< Of a sender that gives no time: two frames at 30 Hz.
+  std::int64_t latency_ns = 67'000'000;   ///< Latency of unstamped input: two frames, 30 Hz.
 };
 
-/// What came of one person's skeletons.
+/// Counts and last fault of one person's skeletons.
 struct PersonCounts {
   Dialect dialect = Dialect::kFooting;
   std::uint64_t skeletons = 0, joints = 0, inferred = 0;
-  std::array<std::uint64_t, 5> verdicts{};  ///< By Verdict.
-  Fault fault = Fault::kNone;               ///< Of the last frame.
+  std::array<std::uint64_t, 5> verdicts{};  ///< Indexed by Verdict.
+  Fault fault = Fault::kNone;               ///< Fault of the last frame.
 };
 
+/// Counts of a tracker since its start.
 struct TrackerCounts {
   std::uint64_t packets = 0, bytes = 0, rejected_packets = 0, skeletons = 0;
   std::uint64_t overtaken = 0;  ///< Skeletons that came after a newer one of their person.
-  std::map<std::int32_t, PersonCounts> people;  ///< By user; bounded as the decoder's.
+  std::map<std::int32_t, PersonCounts> people;  ///< Counts by user; bounded as the decoder's.
 };
 
 /// UDP packets to observations in W: decoder, gate, clock and placement of each person, of whom one
@@ -144,15 +147,15 @@ class Tracker {
   /// 1970.
   void Take(osc::Bytes packet, std::int64_t now_ns, std::int64_t wall_ns,
             std::vector<Observation>& out);
-  /// What has waited too long for the rest of its frame.
+  /// Appends skeletons that have waited too long for the rest of their frame.
   void Flush(std::int64_t now_ns, std::int64_t wall_ns, std::vector<Observation>& out);
 
   /// Lines for a person since the last call: packets that cannot be read, a fault that came or
   /// went, the placement, a person who is wanted and not seen.
   std::vector<std::string> Messages();
 
-  /// What is wrong with a person's skeleton and what to do, also while the camera is not placed;
-  /// empty when all is well.
+  /// Fault of a person's skeleton and its remedy, also while the camera is not placed; empty when
+  /// all is well.
   std::string AdviceOf(std::int32_t user) const;
   /// Why nobody is published at all, where what arrives shows it.
   std::string Advice() const;
@@ -168,7 +171,7 @@ class Tracker {
     PersonGate gate;
     SenderClock clock;
     std::int64_t seen_ns = 0;
-    /// Of its newest skeleton.
+    /// Exposure time of the person's newest skeleton.
     std::int64_t exposed_ns = std::numeric_limits<std::int64_t>::min();
     Fault reported = Fault::kNone;
   };

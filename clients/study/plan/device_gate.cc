@@ -14,7 +14,7 @@ const DeviceStatus* WithRole(DeviceRole role, const std::vector<DeviceStatus>& d
   const DeviceStatus* found = nullptr;
   for (const DeviceStatus& device : devices) {
     if (device.role != role || device.state == stream::DeviceState::kLost) continue;
-    // Of two with one role the live one counts.
+    // The live one of two with one role counts.
     if (found == nullptr || device.state == stream::DeviceState::kLive) found = &device;
   }
   return found;
@@ -25,8 +25,8 @@ bool HasNunchuk(const DeviceStatus& device) {
          device.extension == stream::Extension::kMotionPlusNunchuk;
 }
 
-/// Of a role that the interface needs; null: none. The joystick is in the hand whose Wiimote has
-/// the Nunchuk.
+/// Device of a role that the interface needs; null: none. The joystick is in the hand whose Wiimote
+/// has the Nunchuk.
 const DeviceStatus* DeviceOf(DeviceRole role, const std::string& interface,
                              const std::vector<DeviceStatus>& devices) {
   const DeviceStatus* device = WithRole(role, devices);

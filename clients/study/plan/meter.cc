@@ -39,7 +39,7 @@ BoardMotion BoardMeter::Advance(double time_s, const board::Stance& stance) {
     push_ = 0;
   }
   BoardMotion motion{.stands = true};
-  const auto lean = steps_.lean_right();  // Of steps after two whole ones.
+  const auto lean = steps_.lean_right();  // Lean of steps, known after two whole ones.
   if (!steps_.stepping()) stands_until_s_ = time_s;
   // The first cycle and a late step have another rhythm than the rest and do not count.
   const double cycles = (time_s - stands_until_s_) * steps_.last_frequency_hz();
@@ -97,7 +97,7 @@ bool Present(const DeviceFeatures* device) {
   return device != nullptr && (device->moving || device->inclination_valid);
 }
 
-/// Of a forearm over the horizontal; as mapping::ForearmElevation.
+/// Elevation of a forearm over the horizontal, rad; as mapping::ForearmElevation.
 double Elevation(const DeviceFeatures& hand, bool mounted) {
   if (!mounted) return hand.pitch_rad;
   const double across = std::hypot(std::sin(hand.roll_rad), std::sin(hand.pitch_rad));

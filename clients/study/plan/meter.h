@@ -11,10 +11,10 @@
 
 namespace footing::study::ranges {
 
-/// What a person on two boards does at one instant, with the recognisers of the interface boards.
+/// Motion of a person on two boards at one instant, by the recognisers of the interface boards.
 struct BoardMotion {
   bool stands = false;  ///< Somebody stands on the boards.
-  bool steps = false;   ///< In place, for longer than a cycle, and this step is not late.
+  bool steps = false;   ///< Steps in place for over a cycle, and this step is not late.
   double foot_hz = 0;   ///< While stepping, of one foot in the last two steps.
   bool leans_known = false;
   double lean_right = 0;  ///< Share of the load, -1 to 1; stepping the mean of two steps.
@@ -38,7 +38,7 @@ class BoardMeter {
   double time_s_ = 0;
   double stands_until_s_ = 0;  ///< When the feet began to take turns, or now.
   double rose_s_ = -1;         ///< When a rise was recognised whose push goes on; negative: none.
-  double push_ = 0;            ///< Of that rise, so far.
+  double push_ = 0;            ///< Push of that rise so far, share of the weight.
 };
 
 /// Measures what a person does, from what footingd publishes. What is done in which order does not
@@ -56,9 +56,9 @@ class Meter {
   /// Two boards that both send.
   void AddStance(double time_s, const board::Stance& stance, bool simulated);
 
-  /// What was measured: the 5th and the 95th percentile of each quantity. NoDevice, with their
-  /// roles, where devices were missing; a failure, with the motion to repeat, where a motion was
-  /// not seen for long enough.
+  /// Ranges measured: the 5th and the 95th percentile of each quantity. NoDevice, with their roles,
+  /// where devices were missing; a failure, with the motion to repeat, where a motion was not seen
+  /// for long enough.
   Result<Ranges> Measure() const;
   bool simulated() const { return simulated_; }
 
@@ -69,7 +69,7 @@ class Meter {
   };
   struct Limbs;
 
-  /// Which motion two limbs make, and since when.
+  /// Motion of two limbs, and when it began.
   struct Motion {
     enum class Kind { kNone, kAlternate, kTogether } kind = Kind::kNone;
     double since_s = 0;
@@ -92,7 +92,7 @@ class Meter {
   Motion motion_;
   BoardMeter boards_;
   double time_s_ = -1;
-  double seen_s_ = 0;     ///< With anything of the person's.
+  double seen_s_ = 0;     ///< Time with anything of the person's.
   double unequal_s_ = 0;  ///< Left and right at different frequencies.
   std::map<stream::DeviceRole, double> present_s_;
   bool simulated_ = false;

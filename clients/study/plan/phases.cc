@@ -140,7 +140,7 @@ namespace {
 /// Interfaces that every participant uses on the same test track, where there are several.
 void AddConfounded(const Protocol& protocol, std::vector<std::string>& remarks) {
   if (protocol.participants.size() < 2 || protocol.test_tracks.size() < 2) return;
-  std::map<std::string, std::set<std::string>> tracks;  // Of each interface.
+  std::map<std::string, std::set<std::string>> tracks;  // Tracks of each interface.
   for (const Session& session : MakeSessions(protocol)) {
     for (const Phase& phase : session.phases) {
       if (phase.kind == PhaseKind::kTestTrack) tracks[phase.interface].insert(phase.track);

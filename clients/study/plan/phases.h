@@ -13,6 +13,7 @@
 
 namespace footing::study::plan {
 
+/// Kinds of the phases of a session.
 enum class PhaseKind {
   kConsent,
   kDeviceCheck,
@@ -34,17 +35,17 @@ struct Phase {
   std::string id;  ///< Unique within a session, such as "wrist.straight1".
   PhaseKind kind = PhaseKind::kConsent;
   std::string interface;   ///< Empty: of the whole session.
-  std::string track;       ///< Of trials, practice and demonstration.
-  std::string task;        ///< Of the straight track.
-  double duration_s = 0;   ///< Of practice and rest.
-  std::uint64_t seed = 0;  ///< Of trials; at most 53 bits.
+  std::string track;       ///< Track of trials, practice and demonstration.
+  std::string task;        ///< Task on the straight track.
+  double duration_s = 0;   ///< Duration of practice and rest.
+  std::uint64_t seed = 0;  ///< Seed of trials; at most 53 bits.
 
   bool is_trial() const { return kind == PhaseKind::kStraight || kind == PhaseKind::kTestTrack; }
 };
 
-/// What one participant does, from the consent to the final survey (gait paper, section 8.1): for
-/// each interface the demonstration, the measurement of personal ranges where the protocol
-/// wants it, practice, the straight tracks, one test track, the survey.
+/// Schedule of one participant, from the consent to the final survey (gait paper, section 8.1): for
+/// each interface the demonstration, the measurement of personal ranges where the protocol wants
+/// it, practice, the straight tracks, one test track, the survey.
 struct Session {
   std::string participant;
   std::vector<std::string> interfaces;  ///< In their order.
@@ -57,11 +58,10 @@ struct Session {
 /// drawn without replacement as far as they last.
 std::vector<Session> MakeSessions(const Protocol& protocol);
 
-/// What an experimenter should know of the plan, such as a square that is not complete.
+/// Remarks on the plan for the experimenter, such as an incomplete square.
 std::vector<std::string> Remarks(const Protocol& protocol);
 
-/// In which order participants use the interfaces.
-/// Orders of the conditions 0 to count - 1.
+/// Orders in which participants use the interfaces: permutations of 0 to count - 1.
 using Orders = std::vector<std::vector<std::size_t>>;
 
 /// The Latin square of Williams (1949): every condition equally often at each position, and equally
@@ -94,10 +94,10 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-/// What a participant commands the character with.
+/// Interface with which a participant commands the character.
 struct Played {
   std::string interface;         ///< Name of a stream::UserInterface.
-  std::string turn_by = "head";  ///< Of the interface leg: head, trunk or feet.
+  std::string turn_by = "head";  ///< Turn source of the interface leg: head, trunk or feet.
 };
 
 /// The roles of its devices, as stream::RolesOf.

@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kMostCode = 16;
 constexpr std::size_t kMostTracks = 50;
 constexpr std::size_t kMostItems = 30;
-constexpr std::uint64_t kMostSeed = (1ull << 53) - 1;  // What every JSON reader keeps.
+constexpr std::uint64_t kMostSeed = (1ull << 53) - 1;  // Exact in every JSON reader.
 constexpr double kMostPracticeS = 3600;
 constexpr double kLeastActiveMin = 0.01, kMostActiveMin = 600;
 

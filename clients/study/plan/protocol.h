@@ -12,6 +12,7 @@
 
 namespace footing::study::plan {
 
+/// How the orders of the interfaces are drawn.
 enum class Order {
   kWilliams,  ///< Balanced: see WilliamsOrders.
   kRandom,    ///< An independent random order for each participant.
@@ -48,7 +49,7 @@ struct FinalSurvey {
   std::vector<std::string> overall = {kPreferredItem, "remarks"};
 };
 
-/// How participants are spared.
+/// Rests of the participants.
 struct Rests {
   double between_s = 60;  ///< Before each interface but the first.
   /// After this time in motion (ActiveTime) the participant rests before they move again.
@@ -56,16 +57,16 @@ struct Rests {
   double after_limit_s = 300;  ///< How long. A rest of at least this counts, whatever it is for.
 };
 
-/// What the devices must be like before a trial begins.
+/// Requirements on the devices before a trial begins.
 struct DeviceGate {
   double least_battery = 0.2;  ///< Share of a full battery.
-  double least_rate_hz = 30;   ///< Of reports, from each device that has a role.
+  double least_rate_hz = 30;   ///< Least rate of reports from each device that has a role.
   bool allow_simulated = false;
 };
 
-/// What a study chooses of its interfaces.
+/// Settings of a study's interfaces.
 struct InterfaceSettings {
-  std::string turn_by = "head";  ///< What turns with the interface leg: head, trunk or feet.
+  std::string turn_by = "head";  ///< Turn source of the interface leg: head, trunk or feet.
   /// Each participant's own ranges are measured before practice. Where that is given up, the table
   /// is the one of `tables` or the built-in one.
   bool personal_ranges = false;
@@ -90,7 +91,7 @@ struct Protocol {
   std::string practice_track = "endless";
   std::string straight_track = "straight";
   std::uint64_t straight_trials = 2;        ///< For each interface.
-  std::vector<std::string> straight_tasks;  ///< Of the track; empty: it has none.
+  std::vector<std::string> straight_tasks;  ///< Tasks of the track; empty: it has none.
   std::vector<std::string> test_tracks = {"1", "2", "3", "4"};
   InterfaceSettings settings;
   Survey survey;
@@ -142,6 +143,7 @@ class Reader {
   std::optional<Error> fault_;
 };
 
+/// Scale on which a survey's item is answered.
 enum class SurveyScale {
   kRating,    ///< 1 to 5.
   kExertion,  ///< 0 to 10.
@@ -152,7 +154,7 @@ enum class SurveyScale {
 /// One question of a survey.
 struct SurveyItem {
   std::string interface;  ///< Empty: about the whole study.
-  std::string item;       ///< What is rated, or the question; "exertion" for the exertion.
+  std::string item;       ///< Item to rate, or the question; "exertion" for the exertion.
   SurveyScale scale = SurveyScale::kRating;
   bool at_end = false;  ///< Asked after the last interface.
   std::vector<std::string> choices = {};
@@ -160,10 +162,10 @@ struct SurveyItem {
   bool operator==(const SurveyItem&) const = default;
 };
 
-/// What is asked right after an interface, in this order.
+/// Items asked right after an interface, in this order.
 std::vector<SurveyItem> ItemsAfter(const Protocol& protocol, const std::string& interface);
 
-/// What is asked at the end. Each item is asked of every interface, in the order in which they were
+/// Items asked at the end. Each item is asked of every interface, in the order in which they were
 /// used, before the next item: so they are compared with each other.
 std::vector<SurveyItem> ItemsAtEnd(const Protocol& protocol,
                                    const std::vector<std::string>& interfaces);

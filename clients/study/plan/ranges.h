@@ -15,18 +15,18 @@ namespace footing::study::ranges {
 
 using plan::Played;
 
-/// What of a person's motion is measured.
+/// Names of the measured quantities of a person's motion.
 namespace quantity {
-inline constexpr const char* kAlternateHz = "alternate_hz";  ///< Of a limb, wrist and leg.
-inline constexpr const char* kStraightHz = "straight_hz";    ///< Of straight arms.
-inline constexpr const char* kBentHz = "bent_hz";            ///< Of bent arms.
-inline constexpr const char* kTogetherHz = "together_hz";    ///< Of limbs that swing together.
-/// Half peak to peak of their acceleration, m/s2.
+inline constexpr const char* kAlternateHz = "alternate_hz";  ///< Frequency of alternate swings.
+inline constexpr const char* kStraightHz = "straight_hz";    ///< Frequency of straight arms.
+inline constexpr const char* kBentHz = "bent_hz";            ///< Frequency of bent arms.
+inline constexpr const char* kTogetherHz = "together_hz";    ///< Frequency of common swings.
+/// Half peak to peak acceleration of common swings, m/s2.
 inline constexpr const char* kTogetherMps2 = "together_mps2";
-/// To the right: degrees, or a share with turn_by feet.
+/// Turn to the right: degrees, or a share with turn_by feet.
 inline constexpr const char* kTurnRight = "turn_right";
-inline constexpr const char* kRestRadius = "rest_radius";        ///< Of a stick that is let go.
-inline constexpr const char* kForwardRadius = "forward_radius";  ///< Of a stick that is pushed.
+inline constexpr const char* kRestRadius = "rest_radius";        ///< Radius of a stick at rest.
+inline constexpr const char* kForwardRadius = "forward_radius";  ///< Radius of a forward push.
 inline constexpr const char* kSideRadius = "side_radius";
 inline constexpr const char* kFootHz = "foot_hz";  ///< Stepping in place on boards, of one foot.
 /// Push of a heel rise above the weight, as its share.
@@ -43,20 +43,20 @@ struct Range {
   double seconds = 0;  ///< For how long it was seen; of a group: 0.
 };
 
-/// By quantity.
+/// Measured range of each quantity, by its name.
 using Ranges = std::map<std::string, Range>;
 
-/// One sentence for each thing that a person does, with its time; about 20 s together, of boards
-/// 33 s.
+/// Prompt for one motion of a person, with its duration.
 struct Motion {
   std::string prompt;
   double duration_s = 0;
 };
+/// Motions that measure an interface's ranges, in order; about 20 s together, boards 33 s.
 std::vector<Motion> MotionsOf(const Played& played);
-/// Their times together, s.
+/// Duration of all motions together, s.
 double DurationOf(const Played& played);
 
-/// Where a table's numbers come from.
+/// Origin of a table's numbers.
 struct Provenance {
   std::vector<std::string> participants;  ///< Codes, never names.
   std::string when;                       ///< UTC, ISO 8601.
@@ -72,7 +72,7 @@ struct Provenance {
 Result<nlohmann::ordered_json> TableOf(const Played& played, const Ranges& ranges,
                                        const Provenance& provenance, const std::string& built_in);
 
-/// What a table says of its measurement.
+/// Measurement recorded in a table: interface, ranges and provenance.
 struct Measured {
   Played played;
   Ranges ranges;

@@ -8,25 +8,24 @@
 
 #include "common/base/result.h"
 
-/// What footing-study and the participant's survey screen say to each other: one JSON object a
-/// frame.
+/// Messages between footing-study and the participant's survey screen: one JSON object a frame.
 namespace footing::study::screen {
 
-/// To the screen.
+/// Message to the screen.
 struct Shown {
-  std::uint64_t number = 0;  ///< Of the question, from 1; 0: nothing is asked, `item` is a message.
-  std::string title = {};    ///< What it is about.
-  std::string item = {};     ///< What is rated or asked.
-  std::string scale = {};    ///< What the ends of a rating mean.
-  int least = 0, greatest = 0;            ///< Of a rating; both 0: free text, one line.
-  int position = 0, count = 0;            ///< Of the survey's items, from 1.
+  std::uint64_t number = 0;               ///< Number, from 1; 0: no question, `item` is a message.
+  std::string title = {};                 ///< Subject of the question.
+  std::string item = {};                  ///< Item rated, or the question.
+  std::string scale = {};                 ///< Meaning of the ends of a rating.
+  int least = 0, greatest = 0;            ///< Range of a rating; both 0: free text, one line.
+  int position = 0, count = 0;            ///< Place among the survey's items, from 1.
   std::vector<std::string> choices = {};  ///< One of them is the answer; empty: any is.
 
   bool is_rating() const { return least < greatest; }
   bool operator==(const Shown&) const = default;
 };
 
-/// From the screen: one answer to the question of that number.
+/// Message from the screen: one answer to the question of that number.
 struct Reply {
   std::uint64_t number = 0;
   std::string text;
@@ -38,9 +37,10 @@ struct Reply {
 inline constexpr std::size_t kMostAnswerBytes = 4000;
 inline constexpr std::uint32_t kMostFrameBytes = 16 * 1024;
 
+/// JSON text of a message.
 std::string ToText(const Shown& shown);
 std::string ToText(const Reply& reply);
-/// InvalidData for what is not such an object.
+/// Parses a message; InvalidData when the text is not such an object.
 Result<Shown> ParseShown(std::string_view text);
 Result<Reply> ParseReply(std::string_view text);
 

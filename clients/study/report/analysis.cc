@@ -144,7 +144,7 @@ class TrialMeasures {
   std::map<std::tuple<std::string, std::string, std::string>, Trials> trials_;
 };
 
-/// Of each interface: right after it, and at the end.
+/// Ratings of each interface: right after it, and at the end.
 std::vector<Measure> OfRatings(const std::vector<Records>& people) {
   std::vector<Measure> measures;
   std::map<std::string, std::size_t> index;
@@ -529,7 +529,7 @@ constexpr const char* kCommandStage = "command";
 // Pixels.
 constexpr double kBarHeight = 22, kRowHeight = 34, kBarLeft = 80, kBarsWidth = 560, kLegend = 26,
                  kKey = 10;
-/// Of the stages, in their order.
+/// Colours of the stages, in their order.
 constexpr std::array kColours{"#1f5fa8", "#5b93c9", "#9dbfe0", "#3d8b37", "#d9d9d9", "#c2571a"};
 
 std::string Rectangle(double x, double y, double width, double height, const char* colour,
@@ -545,7 +545,7 @@ double WholeMs(const records::Response& response) {
   return sum_ms;
 }
 
-/// Of one stage; 0 where there is none.
+/// Duration of one stage, ms; 0 where there is none.
 double MsOf(const records::Response& response, const std::string& stage) {
   double ms = 0;
   for (const StageTime& one : response) ms += one.stage == stage ? one.ms : 0;

@@ -22,11 +22,12 @@ inline constexpr std::array kSections{Section::kControl, Section::kFailures, Sec
                                       Section::kSurvey};
 const char* Title(Section section);
 
+/// Value of a measure for one participant and interface.
 struct Value {
   std::string participant;
   std::string interface;
   double value = 0;
-  double exposure_min = 0;  ///< Of a count: the time behind it.
+  double exposure_min = 0;  ///< Exposure behind a count.
   bool censored = false;    ///< A time to failure without a failure: a lower bound.
 };
 
@@ -45,7 +46,7 @@ struct Measure {
   /// An interface with zeros only was not measured, so it is not tested.
   bool zeros_unmeasured = false;
 
-  /// Of an interface, in the order of the participants.
+  /// Values of an interface, in the order of the participants.
   std::vector<double> Of(const std::string& interface) const;
   std::size_t censored(const std::string& interface) const;
   bool all_zero() const;
@@ -57,22 +58,20 @@ struct Measure {
 std::vector<Measure> Measures(const plan::Protocol& protocol,
                               const std::vector<records::Records>& people);
 
-/// From a measure to the table that is tested.
-/// The values to test: without those of interfaces that were not measured.
+/// Values to test: without those of interfaces that were not measured.
 Measure Measured(const Measure& measure);
 
 /// The interfaces of a protocol, the control first.
 std::vector<std::string> InOrder(const plan::Protocol& protocol);
 
-/// In their order. Interfaces without a value are left out; the blocks are of the participants with
-/// a value in each group, where there are two of them.
+/// Table of a measure, interfaces in their order. Interfaces without a value are left out; the
+/// blocks are of the participants with a value in each group, where there are two of them.
 statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol);
 
-/// The same of counts whose rates are compared: the blocks have counts per minute.
+/// Table of counts whose rates are compared: the blocks have counts per minute.
 statistics::StudyTable RateTableOf(const Measure& counts, const plan::Protocol& protocol);
 
-/// What must be known of the values of a measure before its tests are believed, in sentences;
-/// empty: nothing.
+/// Caveats on the values of a measure that limit its tests, in sentences; empty: none.
 std::string NoteOn(const Measure& measure, const plan::Protocol& protocol);
 
 /// Figures as SVG that stands in an HTML page: classes take their colours from the page's style.
@@ -97,7 +96,7 @@ std::string Figure(const Measure& measure, const plan::Protocol& protocol);
 std::string OpenSvg(double width, double height, const std::string& title);
 /// `anchor` is "start", "middle" or "end".
 std::string Label(double x, double y, const std::string& anchor, const std::string& text);
-/// With the characters that HTML reserves replaced.
+/// Text with the characters that HTML reserves replaced.
 std::string Escaped(const std::string& text);
 
 /// The stage of StageLatency that stands for all but the wait for contact.
@@ -116,7 +115,7 @@ double WithoutContactMs(const records::Response& response);
 /// The same without the stage "command", ms.
 double WithoutWindowMs(const records::Response& response);
 
-/// Over all responses with an interface.
+/// Latency of one stage over all responses with an interface.
 struct StageLatency {
   std::string interface;
   std::string stage;  ///< As in stream::ResponseTimes, kWithoutContact, kWithoutWindow or kWhole.
@@ -128,8 +127,8 @@ struct StageLatency {
 /// Whether the figure draws it: a stage, not a sum of stages.
 bool IsBar(const StageLatency& latency);
 
-/// Of the trials that count, interfaces in the order of `interfaces`, stages in theirs; interfaces
-/// without a response are left out, and so are participants who have withdrawn.
+/// Latencies of the trials that count, interfaces in the order of `interfaces`, stages in theirs;
+/// interfaces without a response are left out, and so are participants who have withdrawn.
 std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfaces,
                                          const std::vector<records::Records>& people);
 
@@ -137,14 +136,15 @@ std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfa
 /// whole, as SVG.
 std::string LatencyFigure(const std::vector<StageLatency>& latency);
 
-/// How the measures are tested, as footing-eval stats has it.
+/// Options of the tests, as in footing-eval stats.
 struct TestOptions {
   statistics::Alternative alternative = statistics::Alternative::kTwoSided;
-  statistics::Ties ties = statistics::Ties::kPairwise;  ///< Of Steel's test.
-  std::optional<statistics::Method> method;             ///< Of Steel's p; without: see there.
-  std::optional<std::uint64_t> seed;  ///< Of random permutations; without: the protocol's.
+  statistics::Ties ties = statistics::Ties::kPairwise;  ///< Treatment of ties in Steel's test.
+  std::optional<statistics::Method> method;  ///< Method for Steel's p; nothing: its default.
+  std::optional<std::uint64_t> seed;  ///< Seed of random permutations; nothing: the protocol's.
 };
 
+/// Result of Analyze(): the report as JSON, and the values behind it.
 struct Analysis {
   /// {name, control, participants, withdrawn, unfinished, synthetic, simulated_time, tests:
   /// {alternative, ties, method, seed}, measures: [{id, title, groups: [{interface, n, mean,
@@ -156,7 +156,7 @@ struct Analysis {
   std::vector<Measure> measures;
   std::vector<StageLatency> latency;
   bool synthetic = false;       ///< Any part of it does not come from a person.
-  bool simulated_time = false;  ///< Of any session.
+  bool simulated_time = false;  ///< Any session ran on simulated time.
 };
 
 /// Every measure of a study with its tests against the control.

@@ -49,7 +49,7 @@ constexpr Required kRequired[] = {
     {EventKind::kRating, "item", false},        {EventKind::kRating, "value", true},
     {EventKind::kExertion, "value", true}};
 
-/// What of an event's fields is missing or of another type; a value that is read as 0 instead would
+/// Fields of an event that are missing or of another type; a value that is read as 0 instead would
 /// become a result.
 std::string ProblemOf(const Event& event) {
   for (const char* key : kNumbers) {
@@ -172,7 +172,7 @@ double ActiveTally::total_s() const {
 
 namespace {
 
-/// Of the events of a survey; nothing of any other.
+/// Scale of a survey's event; nothing for any other event.
 std::optional<plan::SurveyScale> ScaleOf(EventKind kind) {
   if (kind == EventKind::kRating) return plan::SurveyScale::kRating;
   if (kind == EventKind::kExertion) return plan::SurveyScale::kExertion;

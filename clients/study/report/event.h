@@ -13,11 +13,12 @@
 #include "clients/study/plan/protocol.h"
 #include "common/base/result.h"
 
-/// What a session's journal says: one JSON object a line, in the order in which it happened. What
-/// is wrong is never changed but corrected by a further event; the state of a session is what its
+/// Events of a session's journal: one JSON object a line, in the order in which they happened. A
+/// wrong event is never changed but corrected by a further one; the state of a session is what its
 /// events add up to.
 namespace footing::study::records {
 
+/// Kinds of a journal's events.
 enum class EventKind {
   kSessionStarted,
   kSessionResumed,
@@ -53,14 +54,15 @@ struct Event {
   bool Flag(const char* key) const;
 };
 
-/// Without the end of the line.
+/// JSON line of an event, without the end of the line.
 std::string ToLine(const Event& event);
 /// InvalidData when the line is not an event.
 Result<Event> ParseLine(std::string_view line);
 
+/// A journal as read from its file.
 struct JournalText {
   std::vector<Event> events;
-  std::size_t whole_bytes = 0;  ///< Of the lines read: what follows is a torn line.
+  std::size_t whole_bytes = 0;  ///< Size of the whole lines; a torn line may follow.
   std::size_t torn_bytes = 0;
 };
 
@@ -69,27 +71,27 @@ struct JournalText {
 /// the next one, is InvalidData with `file` and line.
 Result<JournalText> ParseJournal(std::string_view text, const std::string& file);
 
-/// How long a participant has been moving, out of a journal. A phase's time holds that of its
+/// Time that a participant has been moving, from a journal. A phase's time holds that of its
 /// trials; of a phase that was interrupted the trials that ended count.
 class ActiveTally {
  public:
   /// Every event, in their order.
   void Add(const Event& event);
 
-  /// By interface, s; phases without an interface have an empty name.
+  /// Time in motion by interface, s; phases without an interface have an empty name.
   std::map<std::string, double> by_interface() const;
   double total_s() const;
 
  private:
   std::map<std::string, double> by_interface_;
-  std::string interface_;   ///< Of the phase that goes on.
-  double of_trials_s_ = 0;  ///< Of the trials that ended in it.
+  std::string interface_;   ///< Interface of the current phase.
+  double of_trials_s_ = 0;  ///< Duration of the trials that ended in it.
 };
 
 /// The field of a note that says after how long in motion the participant had a long rest.
 inline constexpr const char* kRestedAt = "rested_at_active_s";
 
-/// Where a session stands after its events.
+/// Progress of a session after its events.
 struct Progress {
   bool started = false;
   bool finished = false;
@@ -101,9 +103,10 @@ struct Progress {
   std::map<std::string, std::string> outcomes;
   double active_s = 0;            ///< How long the participant has been moving.
   double rested_at_s = 0;         ///< The same when they last had a long rest (kRestedAt).
-  std::string interrupted_trial;  ///< Without an end, or with kInterrupted; empty: none.
+  std::string interrupted_trial;  ///< Trial without an end, or kInterrupted; empty: none.
 };
 
+/// Progress after all events of a session with these phases.
 Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>& events);
 
 /// The items of a survey that have no answer yet, in their order: an interrupted survey goes on

@@ -51,8 +51,8 @@ std::string Row(const std::vector<std::string>& cells, const char* tag) {
   return row + "</tr>";
 }
 
-/// Of a test against the control: within subjects where that is known, otherwise of the test that
-/// takes the groups as independent, and says so. Empty where it is not below 0.05.
+/// Significant p of a test against the control: within subjects where that is known, otherwise from
+/// the test of independent groups, marked as such. Empty where it is not below 0.05.
 std::string SignificantP(const ordered_json& measure, const std::string& interface) {
   if (!measure.contains("test") || measure["test"].contains("error")) return "";
   for (const ordered_json& row : measure["test"]["rows"]) {
@@ -348,7 +348,7 @@ std::string Heading(const ordered_json& json) {
   return text + "; tests look for values " + alternative + " than the control's only";
 }
 
-/// What the tests within participants say of one comparison.
+/// Results of the tests within participants for one comparison.
 std::string PairedText(const ordered_json& row) {
   return "paired p " + PText(row, "permutation_p") + ", Wilcoxon " +
          PText(row, "wilcoxon_exact_holm") + ", blocked Dunnett " + PText(row, "block_dunnett_p") +
@@ -359,7 +359,7 @@ bool Has(const ordered_json& measure, const char* test) {
   return measure.contains(test) && !measure[test].contains("error");
 }
 
-/// Of each comparison: what both tests say, as far as they could be made.
+/// Results of both tests for each comparison, as far as they could be made.
 std::string ComparisonLines(const ordered_json& measure) {
   const bool independent = Has(measure, "test"), paired = Has(measure, "paired");
   if (!independent && !paired) return "";
@@ -385,7 +385,7 @@ std::string ForTheReader(std::string remark) {
   return remark;
 }
 
-/// What stands below the tests within participants.
+/// Notes below the tests within participants.
 std::string PairedNotes(const ordered_json& json) {
   const ordered_json& paired = json["paired"];
   std::string participants = "Within participants: " + Short(json, "paired_participants") + " of " +
@@ -451,8 +451,7 @@ std::string GroupLines(const ordered_json& measure) {
   return measure.contains("note") ? lines + "\n  " + measure["note"].get<std::string>() : lines;
 }
 
-/// What to believe of the tests of a measure, without the reasons, and what there is to remark on
-/// the data.
+/// Tests of a measure to rely on, without the reasons, and remarks on the data.
 std::string BelieveText(const ordered_json& measure) {
   const std::string note = measure["test"].value("note", kBelievePaired);
   std::string text = note.substr(0, note.find(':'));

@@ -17,7 +17,7 @@ std::string Short(const nlohmann::ordered_json& object, const char* key);
 std::string PText(const nlohmann::ordered_json& object, const char* key);
 /// The p of a row of independent groups; with one value in each there is nothing to test.
 std::string IndependentPText(const nlohmann::ordered_json& row);
-/// What a row of a test compares.
+/// Name of the comparison in a row of a test.
 std::string NameOfRow(const nlohmann::ordered_json& row);
 
 /// A row for each measure of an analysis: the median of each interface, in their order, with the p
@@ -30,13 +30,13 @@ std::string GroupTable(const nlohmann::ordered_json& groups);
 /// A report of footing-eval stats on independent groups, or its error: p and effect sizes with
 /// their intervals.
 std::string TestTable(const nlohmann::ordered_json& test);
-/// The same of its tests within participants: permutation, Wilcoxon, blocked Dunnett.
+/// Table of the tests within participants: permutation, Wilcoxon, blocked Dunnett.
 std::string PairedTable(const nlohmann::ordered_json& paired);
-/// What Friedman's test says, in a sentence; empty: nothing.
+/// Result of Friedman's test, in a sentence; empty: none.
 std::string FriedmanText(const nlohmann::ordered_json& paired);
 /// A ratio of failure rates as a line of text.
 std::string RateText(const nlohmann::ordered_json& row);
-/// The same of rates.
+/// Table of failure rates and their ratios.
 std::string RateTable(const nlohmann::ordered_json& rate);
 std::string LatencyTable(const std::vector<StageLatency>& latency);
 /// Ratings that are about no interface; empty: there are none.
@@ -49,7 +49,7 @@ std::string AnswerTable(const std::vector<records::Records>& people);
 std::string Page(const Analysis& analysis, const plan::Protocol& protocol,
                  const std::vector<records::Records>& people);
 
-/// The same numbers as lines of text.
+/// Numbers of the page as lines of text.
 std::string Summary(const Analysis& analysis);
 
 }  // namespace footing::study::report

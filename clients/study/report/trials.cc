@@ -79,7 +79,7 @@ void MarkUndone(const Event& event, bool undone, Records& records) {
   }
 }
 
-/// What is about no interface is about the whole study, and so of its end.
+/// An item without an interface is about the whole study, and so belongs to its end.
 bool AtEnd(const Event& event) { return event.Flag("at_end") || event.Text("interface").empty(); }
 
 void TakeRating(const Event& event, const std::string& item, Records& records) {

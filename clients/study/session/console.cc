@@ -73,8 +73,8 @@ class Console::Implementation {
                            });
   }
 
-  /// What was typed before does not answer what comes. What stands in a pipe or file was written
-  /// for it.
+  /// Input typed before a question does not answer it. Input from a pipe or file was written for
+  /// it.
   void DropTypedAhead() {
     if (!terminal_) return;
     ::tcflush(STDIN_FILENO, TCIFLUSH);

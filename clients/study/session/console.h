@@ -31,13 +31,13 @@ class Console {
   /// interrupted or the input has ended.
   Result<std::string> Ask(const std::string& prompt);
 
-  /// From here on single keys count, without Enter; a terminal does not show them. What was typed
+  /// Switches to single keys, without Enter, or back; a terminal does not show them. What was typed
   /// before does not count.
   void ReadKeys(bool on);
   /// The next whole line that was typed, while single keys do not count; nothing when there is
   /// none.
   std::optional<std::string> TakeLine();
-  /// On a terminal, forgets what was typed so far.
+  /// Drops unread input of a terminal.
   void DropTypedAhead();
   /// The oldest key that was pressed since; nothing when there is none.
   std::optional<char> TakeKey();
@@ -51,7 +51,7 @@ class Console {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What an interrupted session ends with: it can go on later.
+/// Error of an interrupted session, which can go on later.
 Error Interrupted();
 
 }  // namespace footing::study

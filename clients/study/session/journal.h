@@ -27,11 +27,12 @@ class Journal {
   Journal& operator=(const Journal&) = delete;
   ~Journal();
 
-  /// When the disk refuses, what was written of the line is cut off again, and every later call
-  /// returns the same failure: the file stays readable, and Resume goes on with it.
+  /// Appends an event. When the disk refuses, the written part of the line is cut off again, and
+  /// every later call returns the same failure: the file stays readable, and Resume goes on with
+  /// it.
   Result<void> Append(records::EventKind kind, nlohmann::ordered_json fields);
 
-  /// Those of the file and those appended.
+  /// Events of the file and those appended.
   const std::vector<records::Event>& events() const { return events_; }
   std::size_t torn_bytes() const { return torn_bytes_; }
   const std::string& path() const { return path_; }
@@ -45,7 +46,7 @@ class Journal {
   int descriptor_ = -1;
   std::vector<records::Event> events_;
   std::size_t torn_bytes_ = 0;
-  std::size_t whole_bytes_ = 0;  ///< Of all lines that are on the disk.
+  std::size_t whole_bytes_ = 0;  ///< Size of all lines on the disk.
   Result<void> refused_;
 };
 
@@ -89,6 +90,7 @@ std::string JournalPath(const std::string& study_folder, const std::string& part
 /// Replaces a file as a whole, readable by its owner alone: after a crash it is the old or the new.
 Result<void> ReplaceFile(const std::string& path, const std::string& text);
 
+/// Makes a folder that only its owner can read; it may exist.
 Result<void> MakeFolder(const std::string& path);
 bool Exists(const std::string& path);
 

@@ -16,7 +16,7 @@ namespace footing::study {
 /// Channels of footingd that a measurement of ranges needs.
 std::vector<std::string> RangeChannels();
 
-/// From the ticks of footingd to a meter of one rig's ranges.
+/// Feeds the ticks of footingd to a meter of one rig's ranges.
 class RangeFeed {
  public:
   /// `rig` empty: the first one with a device of the interface.
@@ -52,12 +52,13 @@ class RangeFeed {
   ranges::Meter meter_;
 };
 
-/// The ranges of what a recording of footingd shows between two instants, in seconds from its
-/// start; `to_s` 0: to its end. Errors as of RecordedSession and Meter::Measure.
+/// Ranges measured in a recording.
 struct RecordedRanges {
   ranges::Ranges ranges;
   bool simulated = false;
 };
+/// Ranges in a recording of footingd between two instants, in seconds from its start; `to_s` 0: to
+/// its end. Errors as of RecordedSession and Meter::Measure.
 Result<RecordedRanges> RangesInRecording(const std::string& path, const ranges::Played& played,
                                          const std::string& rig, double from_s, double to_s);
 

@@ -30,7 +30,7 @@ std::string Holder(const SessionOptions& options) {
 
 /// Everything that must be there before an event can be appended.
 struct Opened {
-  journal::Lock lock;  ///< Of the participant's folder.
+  journal::Lock lock;  ///< Lock on the participant's folder.
   journal::Journal journal;
 };
 
@@ -126,7 +126,7 @@ const char* PhaseText(plan::PhaseKind kind) {
   return "";
 }
 
-/// What the participant sees at the beginning of a phase.
+/// Activity that the participant sees at the beginning of a phase.
 stream::StudyActivity ActivityOf(plan::PhaseKind kind) {
   switch (kind) {
     case plan::PhaseKind::kConsent:

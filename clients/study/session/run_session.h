@@ -19,7 +19,7 @@ class SessionRun {
  public:
   explicit SessionRun(SessionContext context);
 
-  /// Until the end of the session. After an error the session can go on with another run.
+  /// Runs until the end of the session. After an error the session can go on with another run.
   Result<void> Run();
 
  private:
@@ -27,14 +27,15 @@ class SessionRun {
   Result<void> Consent();
   Result<void> Demonstrate(const plan::Phase& phase);
   Result<void> Practise(const plan::Phase& phase);
-  /// Until the time is up or, where that is allowed, Enter is pressed, which the journal notes.
+  /// Waits until the time is up or, where that is allowed, Enter is pressed, which the journal
+  /// notes.
   Result<void> CountDown(stream::StudyActivity activity, const std::string& what, double duration_s,
                          bool may_end_early);
   Result<void> Rest(const std::string& what, double duration_s);
-  /// Before a phase in which the participant moves, once they have moved for long enough.
+  /// Rests before a phase in which the participant moves, once they have moved for long enough.
   Result<void> RestWhereDue(const plan::Phase& next);
   double ActiveS() const;
-  double UnrestedMin() const;  ///< In motion since the last long rest.
+  double UnrestedMin() const;  ///< Time in motion since the last long rest.
   bool NeedsRest() const;
   std::string RestWarning() const;  ///< Empty: none is due.
   /// Attempts of a trial until one counts; first about the one that an interrupted session has
@@ -43,7 +44,7 @@ class SessionRun {
   Result<std::string> Attempt(const plan::Phase& phase);
   /// After an attended attempt: undoes failures as asked; true when the trial is to be repeated.
   Result<bool> AskToRepeat(const plan::Phase& phase, const std::string& outcome);
-  /// Of the attempt of a phase that counts.
+  /// Undoes a failure of the attempt that counts for a phase.
   Result<void> Undo(const plan::Phase& phase, std::uint64_t failure);
   /// The participant's own ranges, until they are measured or the experimenter goes on without.
   Result<void> MeasureRanges(const plan::Phase& phase);
@@ -67,7 +68,7 @@ class SessionRun {
   /// Once its devices are ready, makes an interface the one in force.
   Result<Servers*> UseInterface(const std::string& interface);
 
-  /// Among the warnings that were printed.
+  /// Key of the rest among the printed warnings.
   static constexpr const char* kRestWarning = "rest";
   static constexpr double kSecondsPerMinute = 60;
 
@@ -78,7 +79,7 @@ class SessionRun {
   std::set<std::string> warned_;
   stream::StudyState shown_;
   std::unique_ptr<Servers> servers_;
-  std::unique_ptr<TrialEvents> events_;  ///< Of the newest attempt, until it is settled.
+  std::unique_ptr<TrialEvents> events_;  ///< Events of the newest attempt, until it is settled.
 };
 
 /// Runs or resumes the session of a participant: takes the study's lock, checks the disk, opens the

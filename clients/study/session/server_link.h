@@ -24,7 +24,7 @@ class HeldLease : public std::enable_shared_from_this<HeldLease> {
   HeldLease(const HeldLease&) = delete;
   HeldLease& operator=(const HeldLease&) = delete;
 
-  /// From the client's handler on_state.
+  /// Takes a state from the client's handler on_state.
   void OnState(transport::LinkState state);
   /// Wants the lease again after Release().
   void Hold();
@@ -54,14 +54,15 @@ class HeldLease : public std::enable_shared_from_this<HeldLease> {
   std::string refusal_;
 };
 
-/// What a session wants of a server.
+/// Options of a session's connection to a server.
 struct ServerLinkOptions {
   std::string server;  ///< "footingd" or "footing-sim".
   transport::Address address;
   std::vector<std::string> channels;
-  std::string holder;  ///< Of the server's lease.
+  std::string holder;  ///< Holder of the server's lease.
 };
 
+/// Callbacks of a session's connection to a server.
 struct ServerLinkHandlers {
   std::function<void(const v1::Tick&)> on_tick;
   std::function<void()> on_down;  ///< The connection is lost and is being restored.
@@ -80,7 +81,7 @@ class ServerLink {
   HeldLease& lease();
   const HeldLease& lease() const;
   const std::string& name() const;  ///< "footingd at unix:...".
-  /// How it stands, for a person.
+  /// State of the connection, for a person.
   std::string Text() const;
 
   /// The server is there and does not let this program in.

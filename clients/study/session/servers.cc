@@ -102,7 +102,7 @@ class Servers::Implementation {
   bool simulation_ticked_ = false;
   std::vector<stream::DeviceStatus> devices_;
   SimulationFrame frame_;
-  std::string in_force_;  ///< What this connection made the interface last; empty: nothing.
+  std::string in_force_;  ///< Interface that this connection set last; empty: none.
   stream::Track track_;
   std::function<void(const SimulationFrame&)> on_frame_;
   std::function<void(const v1::Event&)> on_event_;

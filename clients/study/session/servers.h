@@ -19,11 +19,11 @@
 
 namespace footing::study {
 
-/// How long a participant has been moving: the time during which footingd reports that a controller
-/// on the body moves. Thumbs on a joystick and weight on boards do not count.
+/// Time in motion of a participant: the time during which footingd reports that a controller on the
+/// body moves. Thumbs on a joystick and weight on boards do not count.
 class ActiveTime {
  public:
-  /// From each tick; `host_ns` is the server's clock. Time across a gap in the stream, or before
+  /// Takes each tick; `host_ns` is the server's clock. Time across a gap in the stream, or before
   /// the first tick, is not counted.
   void Add(std::int64_t host_ns, bool moving);
   double seconds() const { return seconds_; }
@@ -33,9 +33,9 @@ class ActiveTime {
   double seconds_ = 0;
 };
 
-/// What a session needs of a frame: of its first character.
+/// State of a frame's first character, as far as a session needs it.
 struct SimulationFrame {
-  std::int64_t host_ns = 0;  ///< Of its tick, on the clock of footing-sim.
+  std::int64_t host_ns = 0;  ///< Time of its tick on the clock of footing-sim.
   stream::TrialState trial;  ///< Without an id before the first trial.
   stream::Gait commanded_gait = stream::Gait::kUnspecified;
   stream::Gait gait = stream::Gait::kUnspecified;  ///< The character's own.
@@ -45,11 +45,11 @@ struct SimulationFrame {
 /// Connections to footingd, for the health of the devices, and to footing-sim, for trials.
 class Servers {
  public:
-  /// How to reach them.
+  /// Addresses of the servers and the holder of their leases.
   struct Options {
     transport::Address sensor;
     transport::Address simulation;
-    std::string holder;  ///< Of both leases: who leads the session, for others.
+    std::string holder;  ///< Holder of both leases: who leads the session, for others.
   };
 
   /// Takes the leases of both, which are released in the destructor. NoDevice when one of them is
@@ -67,8 +67,8 @@ class Servers {
   const stream::Track& track() const;
   /// Both connections stand, and the leases are held, but for a footingd that others may use.
   bool live() const;
-  /// What goes on with them cannot go on. A connection that is back within seconds breaks nothing:
-  /// its ticks come after all.
+  /// True once an activity with the servers cannot go on. A connection that is back within seconds
+  /// breaks nothing: its ticks come after all.
   bool broken() const;
   /// Times that a connection was down.
   std::uint64_t breaks() const;
@@ -79,7 +79,7 @@ class Servers {
   /// Asks for it again. WhyNoDevices() says why this session does not have it yet; empty: it has.
   void KeepDevices();
   std::string WhyNoDevices() const;
-  /// How the connections that are not live stand, for a person; empty: both are.
+  /// State of the connections that are not live, for a person; empty: both are live.
   std::string WhyNotLive() const;
 
   /// Called while the console waits.
@@ -92,7 +92,7 @@ class Servers {
   Result<void> UseInterface(const std::string& interface, const std::string& turn_by,
                             const std::string& table);
 
-  /// Where the session stands, for all screens; not waited for.
+  /// Publishes the session's state for all screens; not waited for.
   void Show(const stream::StudyState& state);
 
   /// Sends a command to footing-sim and waits for the answer; a refusal is a failure with its text.

@@ -18,12 +18,13 @@ namespace footing::study {
 
 class SurveyScreen;
 
+/// Options of a participant's session.
 struct SessionOptions {
   std::string participant;
   std::string study_folder;
   std::string protocol_text;
   bool unattended = false;        ///< Nobody is asked and nothing waits; all is marked synthetic.
-  std::uint64_t answer_seed = 1;  ///< Of unattended answers.
+  std::uint64_t answer_seed = 1;  ///< Seed of unattended answers.
   std::map<std::string, std::string> tables;  ///< Texts of the protocol's mapping tables.
   transport::Address sensor;
   transport::Address simulation;
@@ -31,7 +32,7 @@ struct SessionOptions {
   std::string version;
 };
 
-/// What every part of a running session works with.
+/// Context shared by all parts of a running session.
 struct SessionContext {
   const SessionOptions& options;
   const plan::Protocol& protocol;
@@ -41,7 +42,7 @@ struct SessionContext {
   SurveyScreen* screen = nullptr;  ///< The participant's, where there is one.
 };
 
-/// How much the character's heading swings: the standard deviation of its heading error against the
+/// Oscillation of the character's heading: the standard deviation of its heading error against the
 /// track's centre line, rad. The gait paper (section 8.1) compares the "oscillation of the
 /// character's orientation" without defining it.
 class HeadingOscillation {

@@ -163,7 +163,7 @@ class SurveyRun {
   bool here_ = false;  ///< The experimenter asks in the terminal.
 };
 
-/// What the experimenter reads before the first question.
+/// Heading for the experimenter before the first question.
 std::string Heading(const std::vector<SurveyItem>& items, std::size_t left) {
   std::string heading = "Survey";
   if (items.front().at_end) {

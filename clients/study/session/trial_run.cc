@@ -69,7 +69,7 @@ namespace {
 using nlohmann::ordered_json;
 using records::EventKind;
 
-/// Of the task with that name; kUnspecified: the track has none.
+/// Gait wanted by the task with that name; kUnspecified: the track has none.
 stream::Gait WantedGait(const stream::Track& track, const std::string& task) {
   for (const stream::TrackTask& one : track.tasks) {
     if (one.name == task) return one.after;
@@ -176,7 +176,7 @@ ordered_json TrialEvents::Figures() const {
   if (std::isfinite(oscillation_rad)) fields["heading_oscillation_rad"] = oscillation_rad;
   if (tracker_.state().task.empty()) return fields;
   fields["task_done"] = progress.task_phase == stream::TaskPhase::kDone;
-  // Of a task that was never done there is nothing to say.
+  // A task that was never done has no anticipation.
   const auto anticipation_s = anticipation_.seconds();
   if (fields["task_done"] && anticipation_s) fields["anticipation_s"] = *anticipation_s;
   return fields;

@@ -23,12 +23,12 @@
 
 namespace footing::study {
 
-/// How long before the character reached the line of a task the participant had commanded what the
-/// task asks for. The gait paper asks whether "needed changes in behavior can be anticipated"
-/// (section 1), since the character itself cannot answer at once.
+/// Lead of the participant's command of a task's gait over the character's arrival at its line, s.
+/// The gait paper asks whether "needed changes in behavior can be anticipated" (section 1), since
+/// the character itself cannot answer at once.
 class Anticipation {
  public:
-  /// What a frame shows of a task.
+  /// State of a task in one frame.
   struct Sight {
     std::int64_t host_ns = 0;
     double to_mark_m = 0;  ///< Left to the line; negative behind it.
@@ -36,7 +36,7 @@ class Anticipation {
     stream::Gait running = stream::Gait::kUnspecified;  ///< The character's.
     stream::Gait wanted = stream::Gait::kUnspecified;   ///< The task's.
   };
-  /// From each frame, in their order.
+  /// Takes each frame, in order.
   void Add(const Sight& frame);
 
   /// Instant at the line less that of the command, of the newest approach, s: negative where the
@@ -52,21 +52,22 @@ class Anticipation {
   bool answered_ = false;  ///< This approach has its command.
 };
 
-/// How one trial stands, from the frames of footing-sim, whoever ends it.
+/// State of one trial, from the frames of footing-sim, whoever ends it.
 class TrialTracker {
  public:
   explicit TrialTracker(std::string trial) : trial_(std::move(trial)) {}
 
-  /// From each frame, in their order; whether the frame belongs to the trial.
+  /// Takes each frame, in order; true when the frame belongs to the trial.
   bool Add(const stream::TrialState& frame);
 
-  /// As of the newest frame of the trial.
+  /// State in the newest frame of the trial.
   const stream::TrialState& state() const { return state_; }
   bool begun() const { return state_.trial == trial_; }
   bool finished() const { return state_.progress.phase == stream::TrialPhase::kFinished; }
   /// Finished, stopped, or another trial has taken its place.
   bool over() const;
-  /// Of a trial that ends now: "finished" if the character reached the finish line, else `reason`.
+  /// Outcome of a trial that ends now: "finished" if the character reached the finish line, else
+  /// `reason`.
   std::string Outcome(const std::string& reason) const;
 
  private:
@@ -75,7 +76,7 @@ class TrialTracker {
   bool replaced_ = false;
 };
 
-/// What footing-sim publishes during a trial: failures, corrections and responses go into the
+/// Records a trial as footing-sim publishes it: failures, corrections and responses go into the
 /// journal as they come, the rest adds up to the figures of the trial's end.
 class TrialEvents {
  public:
@@ -86,7 +87,7 @@ class TrialEvents {
 
   /// Listens from here on.
   void Begin();
-  /// From here on to corrections alone.
+  /// From here on takes corrections alone.
   void End() { ended_ = true; }
   const std::string& trial() const { return id_; }
 
@@ -94,7 +95,7 @@ class TrialEvents {
   /// The first event that could not be written.
   const Result<void>& written() const { return written_; }
 
-  /// For the event that ends the trial.
+  /// Figures for the event that ends the trial.
   nlohmann::ordered_json Figures() const;
 
  private:
@@ -167,7 +168,7 @@ class TrialRecorder {
 Result<void> UndoFailure(SessionContext& context, Servers& servers, const std::string& trial,
                          std::uint64_t number);
 
-/// The same with the newest failure of the attempt that counts.
+/// Undoes the newest failure of the attempt that counts.
 Result<void> UndoNewest(SessionContext& context, Servers& servers, const std::string& trial);
 
 }  // namespace footing::study

@@ -84,7 +84,7 @@ class PreviewLink {
   std::optional<transport::Socket> socket_;
   preview::PreviewReader reader_;
   scene::CameraPreview shown_;
-  std::shared_ptr<const int> run_;  ///< Of this run: what an earlier one began has another.
+  std::shared_ptr<const int> run_;  ///< Token of this run: calls of earlier runs hold another.
 };
 
 /// The io thread: receives ticks there and hands them to the render thread through a bounded

@@ -22,6 +22,7 @@ struct GlfwLibrary {
   bool ready;
 };
 
+/// Deleter of a GLFW window.
 struct CloseWindow {
   void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
 };
@@ -41,7 +42,7 @@ class FullScreen {
 
  private:
   bool full_ = false;
-  int left_ = 0, top_ = 0, width_ = 0, height_ = 0;  ///< Of the window before.
+  int left_ = 0, top_ = 0, width_ = 0, height_ = 0;  ///< Window before full screen.
 };
 
 /// A mouse that turns the view. Presses are at the place of the move before them: a slow picture
@@ -55,6 +56,7 @@ struct WindowMouse {
   void Button(int action);
 };
 
+/// Size of a picture, pixels.
 struct PixelSize {
   int width = 0;
   int height = 0;

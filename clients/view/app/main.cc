@@ -12,7 +12,7 @@ namespace {
 
 using footing::view::Options;
 
-/// What only playback has, as it was written.
+/// Arguments of playback alone, as written.
 struct PlayArguments {
   std::string align = "start";
   std::optional<double> from_s;

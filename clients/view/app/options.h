@@ -11,7 +11,7 @@
 
 namespace footing::view {
 
-/// What is played in place of servers.
+/// Options of playback, which takes the place of servers.
 struct PlayOptions {
   std::string recording;         ///< A file; empty: servers are shown.
   std::string trial;             ///< Only this one; empty: all.
@@ -21,22 +21,22 @@ struct PlayOptions {
   timeline::Alignment alignment = timeline::Alignment::kStart;
 };
 
-/// What is shown of footing-camera.
+/// Options for the picture of footing-camera.
 struct CameraOptions {
-  transport::Address address;    ///< Of its preview, a Unix socket.
+  transport::Address address;    ///< Address of its preview, a Unix socket.
   bool corner = false;           ///< The preview in a corner, from the start.
-  bool alone = false;            ///< And nothing else.
+  bool alone = false;            ///< Shows the preview and nothing else.
   std::string calibration_file;  ///< The camera file whose pose is calibrated; empty: none is.
 };
 
 /// How the panels look.
 struct LookOptions {
   double ui_scale = 1;         ///< Their size over the usual one.
-  render::PanelChoice panels;  ///< Of those at both sides.
+  render::PanelChoice panels;  ///< Panels shown at both sides.
   bool timeline = true;        ///< Under a recording that is played.
 };
 
-/// What the command line asks for.
+/// Options from the command line.
 struct Options {
   std::vector<transport::Address> addresses;
   PlayOptions play;
@@ -46,11 +46,11 @@ struct Options {
   double record_hz = 10;                   ///< Pictures a second.
   double seconds = 0;                      ///< Ends by itself; 0 runs on.
   bool subject = false;                    ///< The world without the panels.
-  bool text = false;                       ///< In the terminal.
+  bool text = false;                       ///< Text in the terminal.
   bool json = false;                       ///< A summary at the end.
   bool replay_falls = false;               ///< Each fall again in slow motion.
   bool overlay_reference = false;          ///< The reference pose over the body, not beside it.
-  std::vector<v1::Command> next_subjects;  ///< What the key N sends, one after the other.
+  std::vector<v1::Command> next_subjects;  ///< Commands that the key N sends, one after the other.
   bool forces = false;                     ///< Force arrows from the start.
   CameraOptions camera;
   /// Samples per pixel: 0, 2, 4, 8; nothing: as many as render::Target chooses.

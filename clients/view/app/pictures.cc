@@ -83,7 +83,7 @@ std::vector<std::string> EncoderArguments(const std::string& program, const std:
   if (ending == ".gif" || ending == ".webp") {
     arguments.insert(arguments.end(), {"-loop", "0"});
   } else {
-    // What common players show: an even number of pixels each way, and colours at half their size.
+    // Common players need an even number of pixels each way, and colours at half their size.
     arguments.insert(arguments.end(),
                      {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"});
   }

@@ -150,11 +150,11 @@ constexpr std::array<std::pair<int, const char*>, 17> kKeyNames{{
     {GLFW_KEY_KP_DECIMAL, "."},
 }};
 
-/// What the callbacks of one window work on.
+/// State that the callbacks of one window change.
 struct Controls {
   PlaySession& session;
   PlayPicture picture;
-  render::TimelineBoxes boxes;  ///< Of the picture drawn last.
+  render::TimelineBoxes boxes;  ///< Boxes in the picture drawn last.
   bool dragging = false;
   WindowMouse mouse = {};
   FullScreen full_screen = {};
@@ -354,7 +354,7 @@ Result<void> RunPlayback(const Options& options) {
 
 namespace {
 
-/// What goes on at the head, for the timeline.
+/// Trial at the head's position, as text for the timeline.
 std::string TrialTextOf(const PlaySession& session) {
   std::string text;
   for (const PlayedSide& side : session.sides()) {

@@ -30,7 +30,7 @@ class PlaySession {
 
   std::vector<PlayedSide>& sides() { return sides_; }
   const std::vector<PlayedSide>& sides() const { return sides_; }
-  /// Of all sides.
+  /// Timeline of all sides.
   const timeline::Timeline& timeline() const { return timeline_; }
   timeline::PlayHead& head() { return head_; }
   const timeline::PlayHead& head() const { return head_; }
@@ -39,7 +39,7 @@ class PlaySession {
   timeline::SideState StateOf(const PlayedSide& side) const {
     return timeline::SideAt(side.timeline, head_.at_s);
   }
-  /// What a side shows at the head's position.
+  /// Shot of a side at the head's position.
   scene::Show::Shot ShotOf(PlayedSide& side, const scene::StageOptions& options) const;
   /// The recorder's clock of a side at the head's position.
   std::int64_t ClockOf(const PlayedSide& side) const;
@@ -50,14 +50,15 @@ class PlaySession {
   timeline::PlayHead head_;
 };
 
-/// "FILE" or "FILE:TRIAL": the longest beginning that names a file is the file.
+/// A recording and a trial in it.
 struct FileAndTrial {
   std::string file;
   std::string trial;  ///< Empty: none is named.
 };
+/// Splits "FILE" or "FILE:TRIAL": the longest beginning that names a file is the file.
 FileAndTrial SplitTrial(const std::string& text);
 
-/// "start", "finish", "wall".
+/// Alignment of a name: "start", "finish", "wall".
 Result<timeline::Alignment> AlignmentNamed(const std::string& name);
 
 /// Plays in the window, until it is closed, Ctrl-C or options.seconds. A recording that is over
@@ -67,14 +68,15 @@ Result<void> RunPlayWindow(const Options& options, PlaySession& session);
 /// Plays options.play: into the window, into pictures, or as text.
 Result<void> RunPlayback(const Options& options);
 
-/// What a person has switched on while a recording plays.
+/// View options that a person has switched while a recording plays.
 struct PlayPicture {
   render::HudOptions hud;
   bool timeline = true;
   scene::Orbit orbit = {};
 };
 
-/// As the options ask: for the subject neither panels nor timeline; side by side no columns.
+/// View that the options ask for: for the subject neither panels nor timeline; side by side no
+/// columns.
 PlayPicture PictureFor(const Options& options, const PlaySession& session);
 
 /// Draws all sides at the head's position into the bound framebuffer.
@@ -93,7 +95,7 @@ Result<void> DrawPlayedPictures(const Options& options, PlaySession& session);
 /// is not a terminal, a line a second. Runs until Ctrl-C or options.seconds.
 Result<void> RunTextView(const Options& options);
 
-/// How often text is written: a terminal's screen, or a line elsewhere.
+/// Intervals at which text is written, s: a terminal's screen, or a line elsewhere.
 inline constexpr double kScreenEveryS = 0.25;
 inline constexpr double kLineEveryS = 1;
 

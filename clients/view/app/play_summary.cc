@@ -182,7 +182,7 @@ void AddGame(const stream::GameState& game, nlohmann::ordered_json& summary) {
                      {"segments_passed", passed}, {"segments_refused", game.refused}};
 }
 
-/// What the camera showed last.
+/// Adds the camera's last state to the summary.
 void AddCamera(const scene::CameraPreview& camera, nlohmann::ordered_json& summary) {
   static const std::map<preview::Sight, const char*> kSights{
       {preview::Sight::kNothing, "nothing"},

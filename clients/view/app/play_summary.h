@@ -20,7 +20,7 @@ std::string PlaySummary(const PlaySession& session, double seconds);
 /// The state at the head's position, in lines for a terminal: position, trials, and of each
 /// recording what StatusScreen says of a live view.
 std::vector<std::string> PlayScreenText(const PlaySession& session);
-/// The same in one line.
+/// State of the session in one line.
 std::string PlayLine(const PlaySession& session);
 
 /// Ctrl-C and SIGTERM for a loop that asks whether one came.
@@ -45,7 +45,7 @@ class StopSignal {
   bool asked_ = false;
 };
 
-/// What a run has seen, as one JSON object.
+/// Summary of a run, as one JSON object.
 std::string Summary(const scene::Model& model, double seconds);
 
 }  // namespace footing::view

@@ -19,7 +19,7 @@ using playback::PlacedTick;
 using stream::TrialPhase;
 using timeline::TrialMark;
 
-/// Of gait changes, responses or notes.
+/// Limit on gait changes, on responses and on notes.
 constexpr std::size_t kMostInstants = 1'000'000;
 
 stream::FailureCause CauseOf(v1::FailureCause cause) {
@@ -242,8 +242,8 @@ constexpr std::int64_t kSecond = kNanosecondsPerSecond;
 constexpr std::int64_t kStepNs = kSecond / 60;
 /// Ticks are read in blocks of so much time.
 constexpr std::int64_t kBlockNs = kSecond / 2;
-/// What the strips show, and until the camera's slowest filter, 1.5 rad/s, has forgotten where it
-/// started: (1 + wt) exp(-wt) is 3e-7 then.
+/// Time that covers the strips, and after which the camera's slowest filter, 1.5 rad/s, has
+/// forgotten where it started: (1 + wt) exp(-wt) is 3e-7 then.
 constexpr std::int64_t kSeekNs = 12 * kSecond;
 /// Where falls are shown again: the clip and its replay at a quarter of its pace.
 constexpr std::int64_t kSeekWithReplaysNs = 40 * kSecond;
@@ -307,9 +307,9 @@ void RecordedShow::Seek(std::int64_t time_ns, const scene::StageOptions& options
   }
 }
 
-/// What a scene shows of the past, oldest first and disjoint: the last seconds; how the present
-/// gait began, for the order of its states; and for each kind of data that has ceased, its last
-/// seconds, since those stand still on the screen.
+/// Spans of the past that a scene shows, oldest first and disjoint: the last seconds; how the
+/// present gait began, for the order of its states; and for each kind of data that has ceased, its
+/// last seconds, since those stand still on the screen.
 std::vector<RecordedShow::Span> RecordedShow::SeekSpans(std::int64_t time_ns) {
   const std::int64_t first_ns = recording_.first_ns();
   const std::int64_t seek_ns = replays_falls_ ? kSeekWithReplaysNs : kSeekNs;

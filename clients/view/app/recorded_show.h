@@ -23,13 +23,13 @@ inline constexpr std::size_t kPlayedSensors = 1;
 /// Opens a recording for playback: those servers, with the channels that the viewer shows.
 Result<playback::SeekableRecording> OpenForPlayback(const std::string& path);
 
-/// What its events say: trials, failures, tasks, in seconds from its first tick; and when the gait
-/// changed and what was last said, which a seek needs.
+/// Events of a recording: trials, failures, tasks, in seconds from its first tick; and the times of
+/// gait changes, responses and notes, which a seek needs.
 struct RecordedMarks {
   timeline::Timeline timeline;
-  std::vector<std::int64_t> gait_changes_ns;  ///< By time, as the others.
-  std::vector<std::int64_t> responses_ns;     ///< Of the ticks that brought one.
-  std::vector<std::int64_t> notes_ns;         ///< Of the ticks that brought a text to read.
+  std::vector<std::int64_t> gait_changes_ns;  ///< Sorted by time, as the others.
+  std::vector<std::int64_t> responses_ns;     ///< Times of the ticks that brought one.
+  std::vector<std::int64_t> notes_ns;         ///< Times of the ticks that brought a text to read.
 };
 
 /// Reads all events once. InvalidData when there are more than the limits of timeline.h allow.
@@ -38,7 +38,7 @@ Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording);
 /// The scene of a recording at any of its instants.
 ///
 /// The clock of its scene is the recorder's, so slow motion and pauses slow down all that moves.
-/// What is shown at an instant depends on that instant alone: the scene moves on in steps of 1/60 s
+/// The picture at an instant depends on that instant alone: the scene moves on in steps of 1/60 s
 /// that are counted from the recording's start, and after a seek it is built from what it shows of
 /// the past (SeekSpans). Only the counts of scene::Tally and PoseTally are of what was played.
 class RecordedShow {
@@ -78,7 +78,7 @@ class RecordedShow {
   bool replays_falls_ = false;
   std::int64_t taken_to_ns_ = 0;         ///< All ticks before this were taken.
   std::int64_t stepped_to_ns_ = 0;       ///< The last step; 0 before the first.
-  std::vector<std::int64_t> newest_ns_;  ///< Of each server's ticks so far.
+  std::vector<std::int64_t> newest_ns_;  ///< Newest tick of each server so far.
   std::uint64_t track_version_ = 0;      ///< Counts on over seeks: another one is another track.
 };
 
@@ -87,7 +87,7 @@ class RecordedShow {
 scene::Update Translate(const v1::Tick& tick, int source, std::int64_t received_ns,
                         std::int64_t offset_ns);
 
-/// What slows a server or this session, as a note.
+/// Notice of a cause that slows a server or this session, as a note.
 scene::Update TranslateNotice(const v1::Notice& notice, int source, std::int64_t received_ns);
 
 }  // namespace footing::view

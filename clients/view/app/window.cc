@@ -23,7 +23,7 @@ namespace {
 
 constexpr char kSimulation[] = "footing-sim";
 
-/// What the callbacks of the window work on.
+/// State that the callbacks of the window change.
 struct LiveControls {
   render::HudOptions hud;
   WindowMouse mouse;
@@ -227,7 +227,7 @@ void PoseCalibration::Take(const scene::Update& update) {
 }
 
 guide::Answer PoseCalibration::Store(const guide::Action& action) const {
-  constexpr std::size_t kDateLength = 10;  // Of ISO 8601.
+  constexpr std::size_t kDateLength = 10;  // Length of an ISO 8601 date.
   const std::string date = text::Utc(clock::WallNs()).substr(0, kDateLength);
   const auto stored =
       frames::StorePose(options_.camera_file, action.X_WC, date + ": " + action.remark);

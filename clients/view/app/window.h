@@ -31,9 +31,9 @@ class PoseCalibration {
   /// The one that the options ask for, begun; nothing where they do not.
   static Result<std::optional<PoseCalibration>> OfOptions(const std::string& camera_file);
 
-  /// From the first mark on.
+  /// Starts at the first mark.
   void Begin();
-  /// Its screen goes away; nothing is stored.
+  /// Closes its screen; nothing is stored.
   void End();
   bool is_shown() const { return set_up_.has_value(); }
 

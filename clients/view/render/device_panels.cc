@@ -186,7 +186,7 @@ void DrawDevice(const Paint& p, const Box& in, float y, const stream::DeviceStat
   p.WriteRight(p.fonts.small, {in.high.x, y + 18 * s}, colour::kSecond, "SIMULATED");
 }
 
-/// What of the panel is shown.
+/// Part of the panel that is shown.
 struct Extent {
   bool response = false;
   float device_row = kShortDeviceRow;

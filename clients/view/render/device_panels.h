@@ -14,6 +14,7 @@ namespace footing::render {
 void DrawBoardPanel(const Paint& paint, const Box& box, const scene::Model& model,
                     std::int64_t now_ns);
 
+/// Heights that the panel asks for.
 PanelHeight DevicePanelHeight(const scene::Model& model);
 
 /// Connections, age of the data, the last response by stage, and every device's health. In a low

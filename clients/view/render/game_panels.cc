@@ -12,7 +12,7 @@ namespace footing::render {
 namespace {
 
 constexpr float kWidest = 460;
-constexpr float kBothSides = 28;  // Of a panel, both sides.
+constexpr float kBothSides = 28;  // Margins of a panel, both sides together.
 constexpr float kBetweenRows = 4;
 
 ImU32 InkOf(std::size_t player) { return player == 0 ? colour::kAccent : colour::kSecond; }
@@ -86,7 +86,7 @@ void DrawGamePanel(const Paint& p, const stream::GameState& game, Box& space) {
 namespace {
 
 constexpr float kMostWidth = 460;
-constexpr float kMargins = 28;  // Of a panel, both sides.
+constexpr float kMargins = 28;  // Margins of a panel, both sides together.
 
 ImU32 TaskInk(stream::TaskPhase phase) {
   switch (phase) {
@@ -176,8 +176,8 @@ constexpr float kInterfacePanelHeight = 152;
 constexpr float kGaugesTop = 22, kGaugesHeight = 76;
 constexpr float kGaugeGap = 12;
 constexpr float kCommandRow = 24, kProblemRow = 17, kAboveProblem = 8;
-constexpr float kBelowText = 4;       // Of a row, under its letters.
-constexpr float kLettersOfLine = 34;  // That surely fit into the narrowest panel.
+constexpr float kBelowText = 4;       // Space of a row under its letters.
+constexpr float kLettersOfLine = 34;  // Letters that fit into the narrowest panel.
 constexpr ImU32 kLetters = IM_COL32(14, 20, 26, 255);
 
 /// The gauge of the motion, and that of its pace; one over both columns where it says both.
@@ -268,15 +268,15 @@ using stream::Gait;
 constexpr float kCaption = 14;
 constexpr float kTint = 0.30f, kLit = 0.75f;
 constexpr double kMostHz = 5, kMostFootHz = 2.5;
-/// Of figure 11 as in the built-in table, shares of the stick's way and degrees from the front. A
-/// person's own table may have other radii: what is lit is what the interface believes.
+/// Zones of figure 11 as in the built-in table, shares of the stick's way and degrees from the
+/// front. A person's own table may have other radii: the lit zone is the estimate of the interface.
 constexpr float kCentreRadius = 0.25f, kRunRadius = 0.6f;
 constexpr double kStraightDeg = 30, kForwardDeg = 75, kRearDeg = 135;
 constexpr double kGapRad = 0.03;
 
 float Pi(double share) { return static_cast<float>(share * kPi); }
 
-/// What is left over the caption, and its middle.
+/// Writes the centred caption in the lowest row; returns the box above it.
 Box Above(const Paint& p, const Box& box, const std::string& caption) {
   const float y = box.high.y - p.fonts.small->FontSize;
   p.WriteCentred(p.fonts.small, {(box.low.x + box.high.x) / 2, y}, colour::kFaint, caption);

@@ -22,8 +22,8 @@ void DrawTrialPanel(const Paint& paint, const scene::Model& model, const scene::
 /// Nothing without an interface.
 PanelHeight InterfacePanelHeight(const stream::InterfaceState& state);
 
-/// What the user interface believes that the person does: three gauges of the motion, its pace and
-/// its turn, with what each part of them commands, and below them the command.
+/// Estimate of the user interface: three gauges of the person's motion, its pace and its turn, with
+/// the command of each of their parts, and below them the present command.
 void DrawInterfacePanel(const Paint& paint, const Box& box, const stream::InterfaceState& state);
 
 /// The gauges of the interface panel. Each shows one quantity of the person's motion and, in the
@@ -39,7 +39,7 @@ void DrawStickGauge(const Paint& paint, const Box& box, const stream::InterfaceS
 void DrawButtonGauge(const Paint& paint, const Box& box, const stream::InterfaceState& state);
 /// The load on both feet.
 void DrawLoadGauge(const Paint& paint, const Box& box, const stream::InterfaceState& state);
-/// To which side it turns, beyond the dead band.
+/// Turn to either side, beyond the dead band.
 void DrawTurnGauge(const Paint& paint, const Box& box, const stream::InterfaceState& state);
 
 }  // namespace footing::render

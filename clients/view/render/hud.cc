@@ -22,7 +22,7 @@ namespace {
 
 constexpr PanelHeight kBoardPanelHeight{150, 236};
 constexpr float kAloneEdge = 10;
-constexpr float kFigureTop = 0.42f;  // Of the picture's height: the biped's head is lower.
+constexpr float kFigureTop = 0.42f;  // Share of the picture's height: the biped's head is lower.
 
 const scene::CharacterPose* FirstCharacter(const HudContent& content) {
   return content.frame.characters.empty() ? nullptr : &content.frame.characters.front();
@@ -181,7 +181,7 @@ void DrawBanner(const Paint& p, Box& space, const std::string& text, ImFont* fon
   space.low.y += height + 6 * s;
 }
 
-/// What each connection waits for, in lines of at most that width, the first one apart.
+/// Servers that the connections wait for, in lines of at most `width` pixels, the first one apart.
 std::vector<std::vector<std::string>> WaitingTexts(const Paint& p, const scene::Model& model,
                                                    ImFont* font, float width) {
   std::vector<std::vector<std::string>> texts;

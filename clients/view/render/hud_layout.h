@@ -25,7 +25,7 @@ struct HudNeeds {
   PanelHeight camera = {};                 ///< Left, at the bottom: it has its least in any case.
 };
 
-/// Where everything goes, in pixels. No two boxes overlap. A panel without a box is left out: the
+/// Places of all panels, pixels. No two boxes overlap. A panel without a box is left out: the
 /// picture is too small for it.
 struct HudBoxes {
   std::optional<Box> character, strips, devices, interface, boards, camera;
@@ -33,6 +33,7 @@ struct HudBoxes {
   Box middle;  ///< Between the columns, under the stamp: messages to the person.
 };
 
+/// Lays out the panels in a picture of `size`; `scale` is HudScale.
 HudBoxes LayOut(ImVec2 size, float scale, const HudNeeds& needs);
 
 /// The picture's labels beside their points, none over another; one that would stand under a panel

@@ -13,7 +13,7 @@ namespace footing::render {
 
 /// Letters, in pixels of the picture.
 struct Fonts {
-  ImFont* tiny = nullptr;  ///< Of axes.
+  ImFont* tiny = nullptr;  ///< Labels of axes.
   ImFont* small = nullptr;
   ImFont* text = nullptr;
   ImFont* strong = nullptr;
@@ -42,6 +42,7 @@ inline constexpr ImU32 kSecond = IM_COL32(247, 181, 56, 255);
 inline constexpr ImU32 kThird = IM_COL32(240, 100, 73, 255);
 }  // namespace colour
 
+/// Colours of a gait, of a device's state and of a connection's state.
 ImU32 ColourOf(stream::Gait gait);
 ImU32 ColourOf(stream::DeviceState state);
 ImU32 ColourOf(scene::LinkState state);
@@ -63,13 +64,13 @@ struct Paint {
   ImDrawList* list = nullptr;
   Fonts fonts;
   float scale = 1;
-  ImTextureID camera_picture = nullptr;  ///< Of the preview; null: there is none.
+  ImTextureID camera_picture = nullptr;  ///< Texture of the preview; null: none.
 
   /// A dark rounded panel; returns what is left inside its margins.
   Box Panel(const Box& box) const;
   /// Writes at a point, which is the text's upper left corner; returns the text's width.
   float Write(ImFont* font, ImVec2 at, ImU32 colour, std::string_view text) const;
-  /// The same with the point at the upper right corner.
+  /// Writes with the point at the upper right corner.
   float WriteRight(ImFont* font, ImVec2 at, ImU32 colour, std::string_view text) const;
   float WriteCentred(ImFont* font, ImVec2 at, ImU32 colour, std::string_view text) const;
   float WidthOf(ImFont* font, std::string_view text) const;

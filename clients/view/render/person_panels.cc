@@ -13,9 +13,9 @@ namespace footing::render {
 namespace {
 
 constexpr float kLeastBodyHeight = 276;
-constexpr float kRemarkRow = 20;   // Of what only a high enough panel shows.
-constexpr double kSureM = 0.03;    // Two standard deviations of a foot that stands.
-constexpr double kUnsureM = 0.15;  // Of one that no sensor sees.
+constexpr float kRemarkRow = 20;   // Height of a remark, which only a high panel shows.
+constexpr double kSureM = 0.03;    // Two standard deviations of a standing foot.
+constexpr double kUnsureM = 0.15;  // The same of a foot that no sensor sees.
 constexpr ImU32 kDark = IM_COL32(14, 20, 26, 255);
 
 void DrawNumbers(const Paint& p, const Box& box, const scene::BodyState& body) {

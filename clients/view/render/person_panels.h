@@ -9,6 +9,7 @@
 
 namespace footing::render {
 
+/// Heights that the body's panel asks for.
 PanelHeight BodyPanelHeight(const scene::CharacterPose& pose, const scene::Picture& picture);
 
 /// Subject, mode, lag, T-pose, resets, feet and hands of a reconstructed body; keys, angular
@@ -16,7 +17,8 @@ PanelHeight BodyPanelHeight(const scene::CharacterPose& pose, const scene::Pictu
 void DrawBodyPanel(const Paint& paint, const Box& box, const scene::CharacterPose& pose,
                    const scene::Picture& picture);
 
-/// With the states of the gait controller only where there is space for them.
+/// Heights that the character's panel asks for; `phases`: with the states of the gait controller,
+/// only where there is space for them.
 PanelHeight CharacterPanelHeight(bool phases);
 
 /// Gait, speed against command, turn, pending command, distance, falls, and the strip of the gait
@@ -24,8 +26,8 @@ PanelHeight CharacterPanelHeight(bool phases);
 void DrawCharacterPanel(const Paint& paint, const Box& box, const scene::Model& model,
                         const scene::CharacterPose& pose, std::int64_t now_ns);
 
-/// What to do now, how far the rest on the mark is, and in the end the result or the refusal, at
-/// the bottom of `space`.
+/// Draws the calibration's panel at the bottom of `space`: the present instruction, the progress of
+/// the rest on the mark, and in the end the result or the refusal.
 void DrawCalibrationPanel(const Paint& paint, const scene::Calibration& calibration,
                           const Box& space);
 

@@ -58,7 +58,7 @@ class Screen {
   std::vector<World> worlds_;
   float display_scale_ = 1;
   float ui_scale_ = 1;
-  float scale_ = 0;  ///< Of the fonts; 0 before the first picture.
+  float scale_ = 0;  ///< Scale of the fonts; 0 before the first picture.
   Fonts fonts_;
   PreviewTexture preview_;
 };
@@ -94,7 +94,7 @@ struct PlayedView {
 void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const HudOptions& options,
                   const TimelineContent* line, int width, int height);
 
-/// Where the timeline of DrawPlayback lies in a picture of that size.
+/// Place of DrawPlayback's timeline in a picture of that size.
 TimelineBoxes TimelineBoxesOf(const Screen& screen, int width, int height, std::size_t lanes);
 
 }  // namespace footing::render

@@ -204,7 +204,7 @@ void DrawCurve(const Paint& p, const Box& box, const Box& curves, const Plot& pl
   for (std::size_t i = 0; i < points.size(); ++i) {
     const scene::Strip::Point& point = points[i];
     if (point.time_ns > now_ns) break;
-    // What has left the strip draws no line at its edge.
+    // Points that have left the strip draw no line at its edge.
     if (points[std::min(i + 1, points.size() - 1)].time_ns <= now_ns - scene::kStripNs) continue;
     const float x = PlotX(p, box, point.time_ns, now_ns);
     // A phase that wraps from pi to -pi draws no line across the strip.

@@ -10,6 +10,7 @@
 
 namespace footing::render {
 
+/// Heights that the panel asks for.
 PanelHeight StripPanelHeight(const scene::StripSet& strips);
 
 /// The sensor features of the last 10 s, one controller under the other, at most four and as many
@@ -32,7 +33,7 @@ struct Plot {
   float low = 0, high = 1;  ///< Ends of the axis, in the strips' own unit.
   double label_factor = 1;  ///< From the strips' own unit to that of the labels.
   std::vector<Curve> curves;
-  float share = 1;  ///< Of the column's height.
+  float share = 1;  ///< Share of the column's height.
 };
 
 /// Width of the labels to the left of the curves, in units.
@@ -45,7 +46,7 @@ void DrawPlots(const Paint& paint, const Box& box, const std::vector<Plot>& plot
                std::int64_t now_ns);
 /// Seconds before the newest instant, from the top of `box`, under a column of plots.
 void DrawTimeAxis(const Paint& paint, const Box& box);
-/// Where that instant stands between the left and the right edge of the curves of a column.
+/// Column of an instant, pixels, between the left and the right edge of the curves of a column.
 float PlotX(const Paint& paint, const Box& box, std::int64_t time_ns, std::int64_t now_ns);
 
 }  // namespace footing::render

@@ -14,7 +14,7 @@ namespace footing::render {
 namespace {
 
 constexpr float kWidestPanel = 460;
-constexpr float kBothMargins = 28;  // Of a panel, both sides.
+constexpr float kBothMargins = 28;  // Margins of a panel, both sides together.
 constexpr float kBetweenLines = 3;
 
 struct Line {
@@ -105,7 +105,7 @@ void DrawParticipantPanel(const Paint& p, const scene::Model& model,
   const std::vector<ParticipantLine> lines =
       ParticipantLines(p, *text, space.width() - 2 * kParticipantSide * s);
   const float height = HeightOfParticipant(lines, s);
-  // What is wrong with the devices is said above it, and comes first.
+  // A fault of the devices is shown above it, and comes first.
   if (height > space.height()) return;
   float width = text->aside || text->headline.empty() ? 0 : kLeastParticipantWidth * s;
   for (const ParticipantLine& line : lines) {

@@ -7,11 +7,11 @@
 
 namespace footing::render {
 
-/// Where a study's session stands, for its experimenter; takes its height off `space`.
+/// State of a study's session, for its experimenter; takes its height off `space`.
 void DrawStudyPanel(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
 
-/// What the participant of a study reads between trials, in the middle of `space`; beside what
-/// matters more, at its top, whose height it then takes off `space`. `pose`: the first character;
+/// Text for the participant of a study between trials, in the middle of `space`; at its top where
+/// the world matters more, and then its height is taken off `space`. `pose`: the first character;
 /// null: there is none.
 void DrawParticipantPanel(const Paint& paint, const scene::Model& model,
                           const scene::CharacterPose* pose, std::int64_t now_ns, Box& space);

@@ -210,7 +210,7 @@ void ShadowMap::Bind() const {
 
 namespace {
 
-constexpr int kJpegQuality = 92;  // Of 100: edges of letters stay clean.
+constexpr int kJpegQuality = 92;  // Quality out of 100: edges of letters stay clean.
 
 Result<void> Written(int written, const std::string& path) {
   if (written != 0) return {};

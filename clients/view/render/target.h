@@ -123,7 +123,7 @@ class ShadowMap {
   /// Draws the figures' outline around `centre_m` and binds the framebuffer of before again.
   void Draw(const Program& program, PartShapes& shapes, const scene::PartList& figures,
             const Eigen::Vector3f& centre_m);
-  /// As the texture of unit 0.
+  /// Binds it as the texture of unit 0.
   void Bind() const;
 
  private:

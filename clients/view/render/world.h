@@ -8,13 +8,14 @@
 #include "clients/view/scene/stage.h"
 #include "common/base/result.h"
 
-/// The shaders' texts. World frame W; light and colours are linear until the last line.
+/// Shaders of the world. World frame W; light and colours are linear until the last line.
 namespace footing::render {
 
 inline constexpr int kMaxBlobs = 16;
 inline constexpr int kMaxFootholds = 4;
 inline constexpr float kMarkSpanM = 3.6f;  ///< Side of the square of ground that a bird marks.
 
+/// GLSL texts of the shaders for parts, ground, track and sky.
 std::string PartVertexText();
 std::string PartFragmentText();
 std::string PartIdFragmentText();
@@ -33,8 +34,8 @@ std::string SkyFragmentText();
 
 /// Shared by the texts above: version, frame uniforms, sky, fog, output.
 std::string SharedText();
-/// For fragment shaders of wide areas: a pattern of one step of eight bits, so that a slow change
-/// of tone shows no bands.
+/// Text for fragment shaders of wide areas: a pattern of one step of eight bits, so that a slow
+/// change of tone shows no bands.
 std::string GrainText();
 
 /// Draws the world of a picture: figures, track, ground, sky. Needs its OpenGL context current in
@@ -62,7 +63,7 @@ class World {
   void DrawGround(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
   /// One sees through them, but never into them; `opacity` 0 to 1.
   void DrawGhosts(const scene::PartList& parts, float opacity);
-  /// They show through what is before them, faintly.
+  /// Draws signs, which show faintly through the parts before them.
   void DrawSigns(const scene::PartList& parts);
   void DrawClear(const scene::PartList& parts);
   void DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world);

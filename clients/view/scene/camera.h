@@ -12,13 +12,13 @@
 
 namespace footing::scene {
 
-/// Where the picture is taken from. World frame W; OpenGL's clip space.
+/// View point of the picture. World frame W; OpenGL's clip space.
 struct Camera {
   Eigen::Vector3d eye_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d target_m = Eigen::Vector3d(1, 0, 0);
   double vertical_field_rad = 0.80;
-  double roll_rad = 0;  ///< Of the picture, clockwise positive.
-  /// What a person's turns of the view go around; nothing: the target.
+  double roll_rad = 0;  ///< Roll of the picture, clockwise positive.
+  /// Point, W, about which a person turns the view; nothing: the target.
   std::optional<Eigen::Vector3d> pivot_m;
 
   /// World to camera: x right, y up, looking along -z. Without a roll the horizon is level.
@@ -30,7 +30,7 @@ struct Camera {
 inline constexpr double kNearM = 0.1;
 inline constexpr double kFarM = 300;
 
-/// What the camera follows.
+/// Subject that the camera follows, in W.
 struct Subject {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   double heading_rad = 0;
@@ -64,8 +64,8 @@ class ChaseCamera {
   Spring x_, y_;
 };
 
-/// From the front and a little from the side, on the boards' middle; it follows a body that walks
-/// off them. `beside`: there is a second figure.
+/// Camera from the front and a little from the side, on the boards' middle; it follows a body that
+/// walks off them. `beside`: there is a second figure.
 class FrontCamera {
  public:
   void Advance(const Eigen::Vector2d& body_m, bool beside, double dt_s);
@@ -77,10 +77,10 @@ class FrontCamera {
   double distance_m_ = 0;
 };
 
-/// How a person has turned and zoomed the view with the mouse; as it is made, not at all.
+/// Turn and zoom of the view by a person with the mouse; at first none.
 struct Orbit {
-  double azimuth_rad = 0;    ///< Of the eye around the pivot, counter-clockwise from above.
-  double elevation_rad = 0;  ///< Of the eye, upwards.
+  double azimuth_rad = 0;    ///< Angle of the eye around the pivot, counter-clockwise from above.
+  double elevation_rad = 0;  ///< Elevation of the eye, upwards.
   double distance = 1;       ///< Factor of the eye's distance from the pivot.
 };
 
@@ -109,10 +109,10 @@ class MouseOrbit {
   Eigen::Vector2d pressed_ = Eigen::Vector2d::Zero();
 };
 
-/// Where a second figure stands beside the first one: on the floor, not on boards.
+/// Position of a second figure relative to the first, W: on the floor, not on boards.
 inline const Eigen::Vector3d kBesideM{-0.75, -1.30, -0.053};
 
-/// What footing-camera sees, as it is shown in a corner.
+/// Picture of footing-camera as it is shown in a corner.
 struct CameraPreview {
   enum class State {
     kNone,     ///< It is not asked for.
@@ -123,12 +123,12 @@ struct CameraPreview {
   };
   State state = State::kNone;
   std::string address;
-  std::string why;  ///< Of kAbsent and kRefused.
+  std::string why;  ///< Reason for kAbsent and kRefused.
   /// The last one; null before it. Whoever draws it uses its number to see that it is another one.
   std::shared_ptr<const preview::Picture> picture;
 };
 
-/// From this age on a picture is not called live: five pictures were missed.
+/// Age from which on a picture is not called live: five pictures were missed.
 inline constexpr double kPreviewStaleS = 0.5;
 
 /// Seconds since the camera saw the picture; 0 without one.
@@ -137,7 +137,7 @@ double PreviewAgeS(const CameraPreview& preview, std::int64_t now_ns);
 /// Why the picture is not live, and what to do; empty when it is.
 std::string PreviewTrouble(const CameraPreview& preview, std::int64_t now_ns);
 
-/// How a sphere fares, in one line.
+/// State of a sphere, in one line.
 struct PreviewLine {
   std::string text;
   bool is_good = false;  ///< Seen, and well.
@@ -148,7 +148,7 @@ std::vector<PreviewLine> PreviewLines(const preview::Picture& picture);
 /// All of it for a terminal, below "Camera"; nothing where it is not asked for.
 void AddPreviewLines(const CameraPreview& preview, std::int64_t now_ns,
                      std::vector<std::string>& lines);
-/// The same in one line.
+/// State of the preview in one line.
 std::string PreviewStatus(const CameraPreview& preview, std::int64_t now_ns);
 
 }  // namespace footing::scene

@@ -165,7 +165,7 @@ void FallReplay::Push(const WorldFrame& frame) {
   if (!recent_.empty() && frame.time_s == recent_.back().time_s) return;
   const bool fell = !recent_.empty() && Fell(recent_.back(), frame);
   const bool put_back = !recent_.empty() && PutBack(recent_.back(), frame);
-  // What came before a put-back is another walk.
+  // Frames before a put-back belong to another walk.
   if (put_back) recent_.clear();
   if (fell) TakeClip(frame.time_s);
   if (filling_ && (put_back || frame.time_s > fall_s_ + kAfterS)) {

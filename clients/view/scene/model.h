@@ -25,8 +25,8 @@ struct Picture;
 struct Calibration {
   std::string rig;
   std::string file;      ///< The camera file that the pose is written to.
-  std::string prompt;    ///< To the person; empty once there is a result.
-  std::string feedback;  ///< What is seen at the moment.
+  std::string prompt;    ///< Prompt to the person; empty once there is a result.
+  std::string feedback;  ///< State of the camera's view, in words.
   std::optional<guide::MarksState> marks;
   std::optional<stream::SetupItem> result;
 };
@@ -38,7 +38,7 @@ void AddCalibration(const Model& model, std::int64_t now_ns, Picture& picture);
 
 /// The prompt, or how it ended.
 std::string CalibrationTitle(const Calibration& calibration);
-/// What is seen, or cause and remedy of a refusal.
+/// State of the camera's view, or cause and remedy of a refusal.
 std::string CalibrationDetail(const Calibration& calibration);
 /// "Camera's pose, mark 3 of 10".
 std::string CalibrationProgress(const Calibration& calibration);
@@ -63,11 +63,11 @@ class FallReplay {
   /// Counts the clips that became ready.
   std::uint64_t clips() const { return clips_; }
 
-  /// From the clip's start, at `now_ns` of the viewer's clock. Does nothing before ready().
+  /// Plays from the clip's start, at `now_ns` of the viewer's clock. Does nothing before ready().
   void Start(std::int64_t now_ns);
   void Stop() { started_ns_.reset(); }
 
-  /// What to show while a replay runs; nothing before and after it.
+  /// Frame to show while a replay runs; nothing before and after it.
   std::optional<WorldFrame> At(std::int64_t now_ns) const;
   /// Time of the clip at `now_ns` less that of the fall, s: negative before it.
   double FromFallS(std::int64_t now_ns) const { return ClipTimeS(now_ns) - fall_s_; }
@@ -107,7 +107,7 @@ class Playout {
   const WorldFrame& Newest() const { return frames_.back().frame; }
   /// When the newest frame came, on the viewer's clock; 0 without one.
   std::int64_t newest_ns() const { return frames_.empty() ? 0 : frames_.back().received_ns; }
-  /// What to show at `now_ns`. Not to be called while empty.
+  /// Frame to show at `now_ns`. Not to be called while empty.
   WorldFrame At(std::int64_t now_ns) const;
 
  private:
@@ -120,9 +120,9 @@ class Playout {
   std::deque<Timed> frames_;
 };
 
-/// How much of the past the sliding strips show.
+/// Length of the past that the sliding strips show.
 inline constexpr std::int64_t kStripNs = 10'000'000'000;
-/// An older value is no longer the present one.
+/// Age from which on a value is no longer the present one.
 inline constexpr std::int64_t kCurrentNs = 500'000'000;
 
 /// The instant up to which sliding curves are drawn: now, but where nothing has come since
@@ -155,7 +155,7 @@ class Strip {
 struct DeviceStrips {
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
   bool simulated = false;
-  Strip magnitude_mps2;  ///< Of the raw specific force.
+  Strip magnitude_mps2;  ///< Magnitude of the raw specific force.
   Strip filtered_x_mps2, filtered_y_mps2, filtered_z_mps2;
   Strip moving;  ///< 0 or 1.
   Strip frequency_hz;
@@ -177,7 +177,7 @@ struct BoardTrace {
   struct Point {
     std::int64_t time_ns = 0;
     float x_m = 0;  ///< Plate frame P: to the right.
-    float y_m = 0;  ///< To the front.
+    float y_m = 0;  ///< Position towards the front.
     bool joined = true;
   };
   stream::BoardSample newest;
@@ -201,8 +201,8 @@ struct Device {
 /// The newest events.
 struct LastNotes {
   std::optional<Note> response;
-  std::optional<Note> note;    ///< That a person should read.
-  std::map<int, Note> server;  ///< What each source's server said slows it.
+  std::optional<Note> note;    ///< Newest text that a person should read.
+  std::map<int, Note> server;  ///< Last notice of each source's server on what slows it.
 };
 
 /// The user study, where one runs.
@@ -211,8 +211,8 @@ struct ShownStudy {
   std::int64_t received_ns = 0;  ///< On the viewer's clock.
 };
 
-/// Of the person's body, from the trackers and from the simulator, and how a tracker's camera
-/// fares.
+/// Observations of the person's body, from the trackers and from the simulator, and the state of a
+/// tracker's camera.
 struct Observed {
   std::deque<ReferencePose> references;  ///< The last half second, oldest first.
   std::vector<SeenHand> hands;
@@ -236,12 +236,12 @@ struct Model {
   LastNotes last;
   std::map<int, std::int64_t>
       newest_host_ns;               ///< Newest tick's stamp of each source, on the viewer's clock.
-  std::vector<std::string> phases;  ///< Of the first character's present gait, in order of coming.
+  std::vector<std::string> phases;  ///< States of the first character's gait, in order.
   std::deque<PhaseSpan> phase_spans;  ///< The last 10 s, oldest first.
   Tally tally;
   PoseTally pose_tally;
-  Anatomy anatomy;                      ///< Of the first skeleton.
-  std::vector<stream::RigSetup> setup;  ///< Of the server that has one.
+  Anatomy anatomy;                      ///< Anatomy of the first skeleton.
+  std::vector<stream::RigSetup> setup;  ///< Setups of the server that has one.
   Observed observed;
 };
 
@@ -273,20 +273,22 @@ struct Stance {
   double total_n = 0;
   double left_share = 0.5;  ///< 0 to 1.
 };
+/// Stance of the person on the boards.
 Stance StanceOf(const Model& model);
 
-/// What the connected footing-sim runs: the biped, a person on boards, or nothing that has come
-/// yet.
+/// Engine of the connected footing-sim: the biped, a person on boards, or not known yet.
 enum class Engine { kUnknown, kBiped, kPerson };
+/// Engine of the newest ticks.
 Engine EngineOf(const Model& model);
 
-/// What decides which keys of a live view do something.
+/// Conditions that decide which keys of a live view are active.
 struct KeyContext {
   Engine engine = Engine::kUnknown;
   bool has_subjects = false;  ///< Files for the key N were named.
   bool calibrates = false;    ///< A camera file for the key C was named.
   bool may_command = false;   ///< footing-sim is connected, on this machine.
 };
+/// Conditions of the keys in the present state.
 KeyContext ContextOf(const Model& model, bool has_subjects, bool calibrates);
 
 /// A line of the list of keys.

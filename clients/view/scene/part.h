@@ -15,7 +15,7 @@
 
 namespace footing::scene {
 
-/// Which of a skeleton's links is what of a person.
+/// Links of a skeleton that are landmarks of a person.
 struct Anatomy {
   bool person = false;  ///< All that a figure is drawn from is there.
   body::Landmarks landmarks{};
@@ -23,19 +23,20 @@ struct Anatomy {
   std::vector<float> radii_m;  ///< Half of each link's suggested size; 0 where it has none.
 };
 
-/// By the links' names; `person` is false where they are not a person's.
+/// Finds the links by name; `person` is false where they are not a person's.
 Anatomy FindAnatomy(const stream::Skeleton& skeleton);
 
 /// True when a body of those parents has the same tree, so that the names fit it, too.
 bool Fits(const Anatomy& anatomy, const std::vector<int>& parents);
 
+/// Shape of a part before it is stretched and placed.
 enum class Shape : std::uint32_t {
   kBall,  ///< Unit sphere about the origin.
   kBox,   ///< Unit cube about the origin.
   kRod,   ///< Unit radius about z, from z = 0 to 1, its top scaled by the part's taper.
 };
 
-/// What a pixel of the id picture shows; tests count them.
+/// Object that a pixel of the id picture shows; tests count the pixels.
 enum class PartId : std::uint32_t { kNothing = 0, kBird = 1, kForce = 2 };
 
 using Colour = Eigen::Vector3f;  ///< Linear red, green, blue, 0 to 1.
@@ -116,7 +117,8 @@ struct BodyFoot {
   double airborne_s = 0;
 };
 
-/// How a reconstructed body is estimated and how well: character.proto says what each field means.
+/// Estimator state of a reconstructed body and its quality: character.proto says what each field
+/// means.
 struct BodyState {
   std::string subject;
   std::string mode;
@@ -144,7 +146,7 @@ struct ReferencePose {
   std::int64_t received_ns = 0;  ///< On the viewer's clock, like the next.
   std::int64_t sampled_ns = 0;
   std::vector<int> parents;
-  std::vector<Eigen::Vector3d> positions_m;  ///< Of each joint, W.
+  std::vector<Eigen::Vector3d> positions_m;  ///< Position of each joint, W.
 };
 
 /// The segment that the terrain game's builder holds, as a slab that one sees through; nothing
@@ -155,6 +157,7 @@ void AddGhostSegment(const stream::GameState& game, PartList& ghosts);
 inline const Colour kHorizonLight(0.74f, 0.84f, 0.90f);
 inline const Colour kZenithLight(0.09f, 0.30f, 0.66f);
 
+/// A vertex of the sky.
 struct SkyVertex {
   Eigen::Vector3f direction;  ///< From the eye, of any length.
   Colour colour;
@@ -165,6 +168,7 @@ struct SkyMesh {
   std::vector<SkyVertex> vertices;
   std::vector<std::uint32_t> indices;
 };
+/// Builds the dome and the hills.
 SkyMesh BuildSky();
 
 }  // namespace footing::scene

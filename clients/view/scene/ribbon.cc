@@ -185,7 +185,7 @@ constexpr float kPaintM = 0.004f;
 
 constexpr float kLineM = 0.12f;    // Start line and middle line.
 constexpr float kMarkM = 0.35f;    // The mark, seen from afar.
-constexpr float kSquareM = 0.25f;  // Of the finish line.
+constexpr float kSquareM = 0.25f;  // Side of a square of the finish line.
 constexpr float kBorderM = 0.15f;  // Between a line across the track and its edge.
 
 enum Kind { kSurface = 0, kPit = 1, kSide = 2, kWhite = 3, kYellow = 4 };

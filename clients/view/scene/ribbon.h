@@ -15,13 +15,14 @@ namespace footing::scene {
 inline constexpr std::size_t kMostSegments = 2000;  ///< More are not drawn.
 inline constexpr float kPitDepthM = 0.6f;
 
-/// How far a segment's edges run back or on, per metre to the left of the centre line: where the
-/// track turns, both segments end on the line that halves the turn.
+/// Distance by which a segment's edges run back or on, per metre to the left of the centre line:
+/// where the track turns, both segments end on the line that halves the turn.
 struct Mitre {
   double start = 0;  ///< Along offset of the start, over sideways.
   double end = 0;    ///< The same of the end, which runs on.
 };
 
+/// Mitre of the track's segment `i`.
 Mitre MitreOf(const stream::Track& track, std::size_t i);
 
 /// A place on the centre line: neighbours share the places between them to the last bit, so that no
@@ -37,7 +38,7 @@ struct Station {
 /// curves, at most 1 m to either side of each joint; an endless track goes on for its fade.
 std::vector<std::vector<Station>> RunsOf(const stream::Track& track);
 
-/// Between these lengths along the track it fades away; both 0: it does not.
+/// Lengths along the track between which it fades away; both 0: it does not.
 struct Fade {
   float from_m = 0;
   float to_m = 0;
@@ -61,6 +62,7 @@ struct RibbonVertex {
   float kind;  ///< 0 surface, 1 pit, 2 side, 3 white paint, 4 yellow paint.
 };
 
+/// Triangles of a track's ribbon.
 struct RibbonMesh {
   std::vector<RibbonVertex> vertices;
   std::vector<std::uint32_t> indices;
@@ -82,6 +84,7 @@ struct Stroke {
 /// 9 are painted; others leave a gap.
 std::vector<Stroke> PaintNumber(const std::string& digits);
 
+/// A vertex of a solid mesh.
 struct MeshVertex {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;

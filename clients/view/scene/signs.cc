@@ -178,7 +178,7 @@ const Colour kUnsureColour = Rgb(0x8c939c);
 
 const Colour kMiddleColour = Rgb(0xe8e8e8);
 
-/// What a point is called, and its side.
+/// Name of a point of the body, and its side.
 struct PointName {
   const char* text = nullptr;  ///< Null: no part of a body.
   int side = -1;               ///< 0 left, 1 right, -1 the middle.
@@ -221,7 +221,7 @@ PointName NameOf(const stream::HandSample& sample) {
   return {};
 }
 
-/// What is wrong with the sight of a point that has a place; a hand's rest may be seen.
+/// Visibility problem of a point that has a place; the rest of a hand may be seen.
 std::string TroubleOf(const stream::HandSample& sample) {
   if (!sample.occluded) return " too bright";
   return sample.joint == stream::BodyJoint::kUnspecified ? " partly hidden" : " hidden";

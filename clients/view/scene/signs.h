@@ -21,14 +21,14 @@ struct Label {
   Colour colour = Colour::Ones();
 };
 
-/// What is drawn of a body's balance, besides itself.
+/// Signs of a body's balance, drawn besides the body.
 struct BodySigns {
   PartList solid;  ///< Arrows, rings, the COM: they show through the body.
   PartList clear;  ///< Discs on the ground that show what is under them.
   std::vector<Label> labels;
 };
 
-/// Where the COM's projection was lately, oldest first.
+/// Recent path of the COM's projection, oldest first.
 struct ComTrail {
   struct Point {
     double time_s = 0;
@@ -47,12 +47,13 @@ Eigen::Vector2f FootEllipse(const BodyFoot& foot);
 /// angular momentum, and how certain the places of the feet are.
 void AddBodySigns(const CharacterPose& pose, const ComTrail& trail, BodySigns& signs);
 
-/// Arrows at the feet, along the ground's normal force: 1 m long for kForcePerMetreN.
+/// Normal force of the ground for an arrow of 1 m.
 inline constexpr double kForcePerMetreN = 600;
 
+/// Adds arrows at the feet, along the ground's normal force.
 void AddForceArrows(const CharacterPose& pose, PartList& parts);
 
-/// What one tracker said last of one hand or other joint.
+/// Last sample of one tracker for one hand or other joint.
 struct SeenHand {
   stream::HandSample newest;
   std::int64_t received_ns = 0;            ///< On the viewer's clock.

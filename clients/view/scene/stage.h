@@ -27,7 +27,7 @@ struct Blob {
   float darkness = 0;  ///< 0 to 1.
 };
 
-/// Where a bird marks the ground: the point under it and the ground's rise along x and y.
+/// Place where a bird marks the ground: the point under it and the ground's rise along x and y.
 struct Spot {
   Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
   Eigen::Vector2f slope = Eigen::Vector2f::Zero();
@@ -51,6 +51,7 @@ struct Picture {
   float ground_m = 0;  ///< Height of the ground around the track.
 };
 
+/// Options of the scene's picture.
 struct StageOptions {
   bool forces = false;
   bool overlay_reference = false;  ///< Over the figure in place of beside it.
@@ -74,7 +75,7 @@ class Stage {
                         double dt_s, const StageOptions& options);
 
   ChaseCamera camera_;
-  double roll_rad_ = 0;  ///< Of the picture, as it follows a person's head.
+  double roll_rad_ = 0;  ///< Roll of the picture, which follows a person's head.
   FrontCamera front_;
   std::map<std::uint32_t, ComTrail> trails_;
   std::map<std::uint32_t, BirdMotion> motions_;
@@ -109,7 +110,7 @@ class Show {
   /// Shows the last fall again in slow motion, or ends that.
   void ToggleReplay(std::int64_t now_ns);
 
-  /// What to draw at `now_ns`, which never runs back. Frozen, the world and all that slides with
+  /// Shot to draw at `now_ns`, which never runs back. Frozen, the world and all that slides with
   /// time stand still.
   Shot At(std::int64_t now_ns, bool frozen, const StageOptions& options);
 

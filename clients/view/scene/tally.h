@@ -24,7 +24,7 @@ struct BirdSkeleton {
 /// Finds the parts by name; those missing keep the usual order.
 BirdSkeleton FindParts(const stream::Skeleton& skeleton);
 
-/// What moves for the eye alone, filtered over time: a copyable value.
+/// Cosmetic motion of the bird, filtered over time: a copyable value.
 struct BirdMotion {
   bool placed = false;
   double head_yaw_rad = 0;    ///< Filtered over 0.2 s, as a bird holds its head still.
@@ -89,7 +89,7 @@ class Latencies {
   std::int64_t last_ns_ = 0;
 };
 
-/// What one run has seen: the numbers that the program prints at its end.
+/// Counts of one run: the numbers that the program prints at its end.
 ///
 /// A gait counts as seen once the first character has run it without a break for 2 s of simulation
 /// time and three full cycles: six steps, or three jumps, commanded by received features all the
@@ -138,8 +138,8 @@ class Tally {
   std::vector<stream::Gait> seen_;
 };
 
-/// What a run has seen of a reconstructed body, and how far it was from what the simulated person's
-/// body really did. Each pose is held against the reference that was sampled nearest to when the
+/// Statistics of a reconstructed body in one run, and its errors against the true motion of the
+/// simulated person. Each pose is held against the reference that was sampled nearest to when the
 /// pose is of (its publication less its lag), so all latencies count as errors.
 class PoseTally {
  public:
@@ -159,9 +159,9 @@ class PoseTally {
   /// Frames that were compared; the means below are over them, cm, over those that are not valid,
   /// too. Joints are the landmarks of a person without the tips of hands and toes.
   std::uint64_t compared() const { return compared_; }
-  std::uint64_t invalid() const { return invalid_; }  ///< Of the frames compared.
+  std::uint64_t invalid() const { return invalid_; }  ///< Invalid frames among those compared.
   double mpjpe_cm() const { return Mean(all_cm_); }
-  /// Of the joints against the hips.
+  /// Mean error of the joints relative to the hips, cm.
   double mpjpe_root_relative_cm() const { return Mean(relative_cm_); }
   double wrists_cm() const { return Mean(wrists_cm_); }
   double ankles_cm() const { return Mean(ankles_cm_); }

@@ -555,7 +555,7 @@ bool ShowsGame(const stream::GameState& game, const stream::TrialState* trial) {
   if (game.phase == GamePhase::kUnspecified || game.players.size() != 2) return false;
   if (game.phase != GamePhase::kOver && game.phase != GamePhase::kLeft) return true;
   if (trial == nullptr || trial->trial.empty() || game.results.empty()) return true;
-  // What comes after the last round is named after it.
+  // Trials after the last round are named after it.
   return trial->trial.ends_with(game.results.back().trial);
 }
 

@@ -29,7 +29,7 @@ std::string PhaseTitle(const std::string& phase);
 /// "WALK"; "-" for kUnspecified.
 std::string GaitTitle(stream::Gait gait);
 
-/// What one connection waits for and how to start it, in two lines; empty once it is live.
+/// Server that one connection waits for and how to start it, in two lines; empty once it is live.
 std::vector<std::string> WaitingLines(const LinkReport& link);
 
 /// "slow motion: 1.2 s before the fall", at so many seconds from it, negative before.
@@ -37,14 +37,14 @@ std::string ReplayLine(double from_fall_s);
 
 /// The whole state in one screen of plain text, for a terminal.
 std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns);
-/// The same in one line, for a log.
+/// State of the model in one line, for a log.
 std::string StatusLine(const Model& model, std::int64_t now_ns);
 
-/// That the person's devices are silent, in words for whoever stands in front of the screen.
+/// Notice that the person's devices are silent, for a reader in front of the screen.
 struct LostSignal {
   std::string what;    ///< "No signal from the left hand and the right hand".
-  std::string effect;  ///< What the character does meanwhile.
-  std::string advice;  ///< What to do.
+  std::string effect;  ///< Behaviour of the character meanwhile.
+  std::string advice;  ///< Remedy.
 };
 
 /// None while all devices of the character's interface are there, and while it follows commands in
@@ -54,10 +54,10 @@ std::optional<LostSignal> LostSignalOf(const CharacterPose& pose);
 /// All of it in one line; empty: nothing is lost.
 std::string LostLine(const CharacterPose& pose);
 
-/// What slows a source's server, if it said so within the last 30 s; empty: nothing.
+/// Cause that slows a source's server, if reported within the last 30 s; empty: none.
 std::string NoticeText(const Model& model, int source, std::int64_t now_ns);
 
-/// Of all servers, at the end of a log's line, for 3 s: a line comes every second.
+/// Notices of all servers, at the end of a log line, for 3 s: a line comes every second.
 std::string NoticesOfLogLine(const Model& model, std::int64_t now_ns);
 
 /// A trial as a person reads it.
@@ -72,8 +72,8 @@ const stream::TrialState* ShownTrial(const CharacterPose& pose, const stream::St
 /// "trial p07-2 running 12.3 s"; "trial ready".
 std::string TrialTitle(const stream::TrialState& trial);
 
-/// What the user has to do: "walk to the line, then run: 12 m" before the mark, "now run" behind
-/// it, "run: done" at last; empty without a task.
+/// Task of the user: "walk to the line, then run: 12 m" before the mark, "now run" behind it, "run:
+/// done" at last; empty without a task.
 std::string TaskText(const stream::TrialState& trial, const stream::Track& track);
 
 /// "failed attempts 3 (curve 2, jump 1), withdrawn 1, put back by the operator 1".
@@ -92,30 +92,32 @@ std::string RolesText(std::uint32_t roles);
 /// "hands swing alternately": what the interface believes that the person does.
 std::string ActivityText(const stream::InterfaceState& state);
 
-/// What is wrong with the devices and what to do; empty when nothing is.
+/// Fault of the devices and its remedy; empty when there is none.
 std::string ProblemText(const stream::InterfaceState& state);
 
 /// The whole belief in one line; empty without an interface.
 std::string InterfaceText(const stream::InterfaceState& state);
 
-/// The terrain game as a person reads it.
-/// Whether somebody plays; or has played, and no other trial has begun since. `trial` may be null.
+/// True while the terrain game is played, and after it until another trial begins. `trial` may be
+/// null.
 bool ShowsGame(const stream::GameState& game, const stream::TrialState* trial);
 
-/// What happens: "Round 1 of 2", "Round 2 of 2 begins", "Change the controllers over", "Ben wins".
+/// State of the game: "Round 1 of 2", "Round 2 of 2 begins", "Change the controllers over", "Ben
+/// wins".
 std::string GameTitle(const stream::GameState& game);
 
 /// Time left, "0:42"; empty where nothing runs out.
 std::string GameClock(const stream::GameState& game);
 
-/// What the player does now, "runs" or "builds"; empty between rounds.
+/// Role of the player now, "runs" or "builds"; empty between rounds.
 std::string PartText(const stream::GameState& game, std::size_t player);
 
-/// How the round stands: "23.4 m, 7 of 9 segments passed, failures 2 (curve 2)"; empty before the
+/// State of the round: "23.4 m, 7 of 9 segments passed, failures 2 (curve 2)"; empty before the
 /// first one.
 std::string RoundText(const stream::GameState& game);
 
-/// What the builder holds: "next: up 3.2 deg, left 8 deg"; "next: level"; empty without a ghost.
+/// Segment that the builder holds: "next: up 3.2 deg, left 8 deg"; "next: level"; empty without a
+/// ghost.
 std::string GhostText(const stream::GameState& game);
 
 /// All of it in one line, and a line each.
@@ -128,7 +130,7 @@ bool ShowsStudy(const stream::StudyState& study);
 /// "P01, wrist.straight1, attempt 2 (4 of 23)".
 std::string StudyTitle(const stream::StudyState& study);
 
-/// What is left of a countdown `passed_s` after it was sent, "4:12"; empty without one.
+/// Remaining time of a countdown `passed_s` after it was sent, "4:12"; empty without one.
 std::string StudyClock(const stream::StudyState& study, double passed_s);
 
 /// "next: wrist.straight2; in motion so far 12.5 min".
@@ -137,11 +139,11 @@ std::string StudyNext(const stream::StudyState& study);
 /// "keys: s stops it, u undoes the latest failure"; empty without any.
 std::string StudyKeys(const stream::StudyState& study);
 
-/// What a study's participant reads on their own screen.
+/// Text for a study's participant on their own screen.
 struct ParticipantText {
   std::string headline = {};  ///< "Get ready".
-  std::string count = {};     ///< Of the count-in, "3", "2", "1", "Go!"; of a countdown, "0:42".
-  std::string detail = {};    ///< What comes next, or what to do; may be empty.
+  std::string count = {};     ///< Count-in, "3", "2", "1", "Go!", or countdown, "0:42".
+  std::string detail = {};    ///< Next step or instruction; may be empty.
   bool aside = false;         ///< The world matters more: a banner at the top.
 };
 

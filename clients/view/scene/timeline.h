@@ -9,14 +9,14 @@
 #include "common/base/result.h"
 #include "common/stream/trial.h"
 
-/// What a recording holds, by time. Positions are seconds from the timeline's zero: the recording's
-/// first tick, or where trials are compared the instant they are aligned at.
+/// Contents of a recording, by time. Positions are seconds from the timeline's zero: the
+/// recording's first tick, or where trials are compared the instant they are aligned at.
 namespace footing::timeline {
 
 /// An attempt that failed.
 struct FailureMark {
   double at_s = 0;
-  std::uint64_t number = 0;  ///< Of the server's failures, from 1; 0: unknown.
+  std::uint64_t number = 0;  ///< Number among the server's failures, from 1; 0: unknown.
   stream::FailureCause cause = stream::FailureCause::kUnspecified;
   std::string trial;  ///< Its id; empty: none.
   double trial_time_s = 0;
@@ -33,7 +33,7 @@ struct TaskMark {
 /// One trial, from when it was made ready to its end.
 struct TrialMark {
   std::string id;            ///< Empty: nobody gave it one.
-  std::uint64_t number = 0;  ///< Of the trials started, from 1; 0: the one a server begins with.
+  std::uint64_t number = 0;  ///< Number of the trial, from 1; 0: a server's initial one.
   std::string track;
   std::string task;
   double begin_s = 0;             ///< It is ready, or the recording begins.
@@ -43,6 +43,7 @@ struct TrialMark {
   double time_s = 0;                                      ///< Its clock then.
 };
 
+/// Trials, failures and tasks of a recording, s from its zero.
 struct Timeline {
   double begin_s = 0;
   double end_s = 0;
@@ -56,7 +57,7 @@ struct Timeline {
 /// Marks of one timeline: more are refused before memory is taken.
 inline constexpr std::size_t kMostMarks = 100'000;
 
-/// The same seen from another zero: every position less `zero_s`.
+/// Timeline seen from another zero: every position less `zero_s`.
 Timeline Shifted(Timeline timeline, double zero_s);
 
 /// The first failure behind a position, or the last one before it; withdrawn ones count too.
@@ -86,7 +87,7 @@ Timeline Only(const Timeline& timeline, const TrialMark& trial);
 /// Paces of playback: recorded seconds a second.
 inline constexpr std::array kSpeeds{0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
-/// Where playback stands on a timeline, and how it moves on.
+/// Position of playback on a timeline, and its pace.
 struct PlayHead {
   double begin_s = 0;
   double end_s = 0;
@@ -97,7 +98,7 @@ struct PlayHead {
   bool ended() const { return at_s >= end_s; }
 };
 
-/// From `begin_s` on.
+/// Play head at `begin_s`.
 PlayHead HeadAt(double begin_s, double end_s, double speed);
 
 /// Moves to a position, or to the nearest end.
@@ -110,7 +111,7 @@ PlayHead Advanced(PlayHead head, double passed_s);
 double Faster(double speed);
 double Slower(double speed);
 
-/// What a person can ask of playback.
+/// Playback commands of a person.
 enum class PlayAction {
   kPause,
   kBack,
@@ -174,7 +175,7 @@ std::optional<PlayAction> ActionOf(const char* key);
 /// head stays where there is no failure or trial to go to.
 PlayHead Act(const PlayHead& head, PlayAction action, const Timeline& timeline, double frame_s);
 
-/// At which instant two trials stand side by side: that instant is 0 of both.
+/// Instant at which two trials are aligned: it is 0 of both.
 enum class Alignment {
   kStart,   ///< The start line, or the beginning of a trial that never crossed it.
   kFinish,  ///< The end of both trials.
@@ -183,7 +184,7 @@ enum class Alignment {
 
 /// One of two recordings to be compared.
 struct Side {
-  Timeline timeline;  ///< Of what is played, usually one trial; zero is the recording's own.
+  Timeline timeline;  ///< Part played, usually one trial; zero is the recording's own.
   /// UNIX time of the recording's zero; nothing when it does not say.
   std::optional<std::int64_t> wall_of_zero_ns;
 };
@@ -195,12 +196,13 @@ Result<std::array<double, 2>> ZerosOf(const std::array<Side, 2>& sides, Alignmen
 /// The 0 of a trial that plays alone: where its clock starts.
 double ZeroOf(const Timeline& trial);
 
-/// Where one side stands while both play, at a common position within or beside its own time.
+/// State of one side while both play, at a common position within or beside its own time.
 struct SideState {
   double at_s = 0;        ///< Position to show.
   bool before = false;    ///< It has not begun: its first state is shown.
   bool finished = false;  ///< It is over: its last state is shown.
 };
+/// State of a side at the common position `at_s`.
 SideState SideAt(const Timeline& side, double at_s);
 
 /// Marks of both, over the time in which either plays.

@@ -17,7 +17,7 @@
 #include "common/stream/study.h"
 #include "common/stream/user_interface.h"
 
-/// What one tick of a server brings, as plain structs. World frame W: x forward, y left, z up; SI.
+/// Contents of one tick of a server, as plain structs. World frame W: x forward, y left, z up; SI.
 namespace footing::scene {
 
 /// One character of one frame.
@@ -31,20 +31,22 @@ struct CharacterPose {
   Eigen::Vector3d com_velocity_mps = Eigen::Vector3d::Zero();
   stream::GaitState gait;  ///< Its phase stays empty: the name travels as a text of its own.
   std::string phase;
-  stream::InterfaceState interface;  ///< Of the gait engine.
+  stream::InterfaceState interface;  ///< Interface state of the gait engine.
   bool simulated_input = false;
-  std::optional<BodyState> body;            ///< Of a reconstructed person.
-  std::optional<stream::TrialState> trial;  ///< Of a character on a track.
+  std::optional<BodyState> body;            ///< Body of a reconstructed person.
+  std::optional<stream::TrialState> trial;  ///< Trial of a character on a track.
 };
 
+/// One frame of the world, from one tick of footing-sim.
 struct WorldFrame {
-  std::uint64_t sequence = 0;  ///< Of its tick.
+  std::uint64_t sequence = 0;  ///< Sequence number of its tick.
   std::uint64_t step = 0;
   double time_s = 0;  ///< Simulation time.
   std::uint64_t overruns = 0;
   std::vector<CharacterPose> characters;
 };
 
+/// Kinds of notes that the viewer shows or counts.
 enum class NoteKind {
   kOther,
   kFall,
@@ -61,13 +63,14 @@ struct Note {
   NoteKind kind = NoteKind::kOther;
   std::int64_t host_ns = 0;
   std::string text;
-  stream::ResponseStages response;  ///< Of kResponse.
+  stream::ResponseStages response;  ///< Stages of a kResponse.
   std::int64_t received_ns = 0;     ///< On the viewer's clock.
 };
 
-/// How one connection fares.
+/// Liveness of one connection.
 enum class LinkState { kConnecting, kLive, kStale, kRefused };
 
+/// State of one connection.
 struct LinkReport {
   std::string address;    ///< As the user typed it.
   std::string server_id;  ///< "footingd", "footing-sim"; empty before the first Welcome.
