@@ -2,10 +2,11 @@
 
 Usage: check_words.py SOURCE_ROOT [--list] [--count]
 
-Five kinds of text are read. `text`: string literals of .h and .cc files, scripts, documentation
+Six kinds of text are read. `text`: string literals of .h and .cc files, scripts, documentation
 and the comments of .proto files. `comments`: comments of .h and .cc files. `names`: identifiers of
 .h and .cc files. `pages`: prose of .md files, which must not use the words of PAGE_RULES either.
 `sentences`: the same prose, in which a sentence has at most LONGEST_SENTENCE words.
+`openings`: comments of .h and .cc files, those of the tests too, which must not begin with "Of" or "What".
 RULES name the words and what to write in their place; words_exceptions.csv lists
 the phrases that may stay, with the reason; words_allowed.csv says how many findings of a kind a
 folder may still have (a folder that it does not list: none). That number only ever goes down.
@@ -43,6 +44,8 @@ PAGE_RULES = [
     (r"(?-i:p)(?! ?[<>=]|[- ]values?\b)", "p value"),
 ]
 LONGEST_SENTENCE = 35
+OPENING = re.compile(r"/[/*]+[!<]*\s*(?P<words>(?:Of|What)\b)?")
+OPENING_ADVICE = "begin with the thing and its unit: 'Load of the left board, N.', 'Request of a client.'"
 NAMES = re.compile(
     r"(?:(?<![a-z])(?:tell|told|telling|tellings|anew|carried|rehears(?!e(?![a-z]))\w*|room|shelf|shelves|book|talk|voice"
     r"|farewell|wishes|worn|obey|judge)(?![a-z])"
@@ -50,7 +53,7 @@ NAMES = re.compile(
     r"|Wishes|Worn|Made|StandIn|Obey|Judge|Words)(?![a-z]))")
 STRING_OR_COMMENT = re.compile(
     r'(?P<raw>R"(?P<mark>[^(\s]*)\((?P<body>.*?)\)(?P=mark)")'
-    r'|(?P<string>"(?:\\.|[^"\\\n])*")|(?P<char>\'(?:\\.|[^\'\\\n])+\')'
+    r'|(?P<string>"(?:\\.|[^"\\\n])*")|(?P<char>(?<!\d)\'(?:\\.|[^\'\\\n])+\')'
     r"|(?P<line>//[^\n]*)|(?P<block>/\*.*?\*/)", re.S)
 IDENTIFIER = re.compile(r"\b[A-Za-z_]\w*\b")
 Finding = collections.namedtuple("Finding", "kind path line words advice excerpt")
@@ -100,6 +103,22 @@ def join_comments(pieces):
         yield kind, line, text
     if held:
         yield held
+
+
+def openings(path, text):
+    """Finds comments that begin with "Of" or "What": the first line of each, not a line that goes on with it."""
+    above = None  # Line and column of the comment that may go on.
+    for match in STRING_OR_COMMENT.finditer(text):
+        if not match["line"] and not match["block"]:
+            continue
+        start = text.rfind("\n", 0, match.start()) + 1
+        line, column = text.count("\n", 0, start) + 1, match.start() - start
+        goes_on = above == (line - 1, column) and not text[start:match.start()].strip()
+        opening = OPENING.match(match.group())
+        if opening["words"] and not goes_on:
+            yield Finding("openings", path, line, opening["words"], OPENING_ADVICE, match.group().split("\n")[0])
+        is_empty = opening.end() == len(match.group())
+        above = None if is_empty else (line, column)
 
 
 def pieces_of(path, text):
@@ -153,6 +172,7 @@ def long_sentences(path, text):
 def files_of(root):
     for top in ("common", "daemon", "clients"):
         yield from (p for p in sorted((root / top).rglob("*")) if p.suffix in (".h", ".cc", ".py"))
+    yield from (p for p in sorted((root / "tests").rglob("*")) if p.suffix in (".h", ".cc"))  # For openings.
     yield from sorted((root / "proto").rglob("*.proto"))
     yield from (p for p in sorted((root / "scripts").iterdir()) if p.is_file())
     yield from sorted((root / "docs").rglob("*.md"))
@@ -190,6 +210,10 @@ def find_in(kind, path, line, text, exceptions):
 def check_file(root, path, exceptions):
     relative = path.relative_to(root).as_posix()
     found = []
+    if path.suffix in (".h", ".cc"):
+        found += openings(relative, path.read_text())
+        if relative.startswith("tests/"):
+            return found
     for kind, line, text in pieces_of(path, path.read_text()):
         found += find_in(kind, relative, line, text, exceptions)
     if path.suffix == ".md":

@@ -32,6 +32,14 @@ class Words(unittest.TestCase):
     def test_comments_of_neighbouring_lines_are_one_text(self):
         self.assertEqual(found("// what is\n// no board\n"), [("comments", 1, "is no")])
 
+    def test_a_comment_begins_with_what_it_describes(self):
+        self.assertEqual(found("double x;  ///< Of the left board.\ndouble y;  // What it weighs.\n/// What a client\n"
+                               "/// asked for.\nint z = 1'000;  // Of a person's.\n"),
+                         [("openings", 1, "Of"), ("openings", 2, "What"), ("openings", 3, "What"), ("openings", 5, "Of")])
+        self.assertEqual(found("/// Load of the left board.\n/// What it weighs.\nint x;  // Offset.\n"
+                               'auto s = "// What";  // In N,\n                     // Of course.\n'), [])
+        self.assertEqual(found("// What it told.\n", "tests/x.cc"), [("openings", 1, "What")])
+
     def test_identifiers_are_read_word_by_word(self):
         self.assertEqual(found("int told_m; Bookshop stock; class RoleBook {};\n"),
                          [("names", 1, "told_m"), ("names", 1, "RoleBook")])
