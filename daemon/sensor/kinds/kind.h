@@ -17,9 +17,10 @@ using Outputs = handshake::HandshakeSequencer::Outputs;
 using Stored = std::optional<std::vector<std::uint8_t>>;
 
 /// One device as the kind that it is: from its reports to samples in SI units, and from
-/// commands to its reports. The defaults suit a device that only sends samples; a kind overrides what it has
-/// beyond that (a sphere, a camera, a calibration in feature reports, a second link). Pure: time is
-/// an argument, reports come and go as bytes. Docs: docs/devices.md#to-add-a-kind-of-device.
+/// commands to its reports. The defaults suit a device that only sends samples; a kind overrides
+/// what it has beyond that (a sphere, a camera, a calibration in feature reports, a second link).
+/// Pure: time is an argument, reports come and go as bytes. Docs:
+/// docs/devices.md#to-add-a-kind-of-device.
 class Kind {
  public:
   virtual ~Kind() = default;
