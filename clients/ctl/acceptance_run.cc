@@ -19,6 +19,7 @@
 #include "common/recording/recorded_session.h"
 #include "common/recording/stream_recorder.h"
 #include "common/runtime/clock.h"
+#include "common/stream/roles.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {

@@ -14,6 +14,7 @@
 #include "common/runtime/timer.h"
 #include "common/stream/interface_roles.h"
 #include "common/stream/leg_turn.h"
+#include "common/stream/roles.h"
 #include "common/virtual/devices/accelerometer.h"
 #include "common/virtual/devices/board_cells.h"
 #include "common/virtual/devices/noise.h"

@@ -1,5 +1,6 @@
-# add_module(<name> [PURE] HEADERS ... SOURCES ... [DEPS ...] [PRIVATE_DEPS ...])
+# add_module(<name> [PURE] HEADERS ... SOURCES ... [GENERATED ...] [DEPS ...] [PRIVATE_DEPS ...])
 #
+# GENERATED are files of generate_messages() (common/cmake/messages.cmake).
 # One folder = one module = one static library = one namespace. A module may name only modules
 # declared above it, so the order of add_subdirectory() in the top-level CMakeLists.txt is the
 # layering, and cycles cannot be written. DEPS also names external libraries by their short
@@ -59,7 +60,7 @@ function(_resolve_deps name folder pure out_links)
 endfunction()
 
 function(add_module name)
-  cmake_parse_arguments(arg "PURE" "" "HEADERS;SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  cmake_parse_arguments(arg "PURE" "" "HEADERS;SOURCES;GENERATED;DEPS;PRIVATE_DEPS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "add_module(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -88,6 +89,13 @@ function(add_module name)
   target_sources(${name} ${scope}
                  FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${with_source}
                  FILE_SET without_source TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${without_source})
+  if(arg_GENERATED)
+    set(headers ${arg_GENERATED})
+    list(FILTER headers INCLUDE REGEX "\\.h$")
+    list(REMOVE_ITEM arg_GENERATED ${headers})
+    target_sources(${name} PRIVATE ${arg_GENERATED}
+                   PUBLIC FILE_SET generated TYPE HEADERS BASE_DIRS ${PROJECT_BINARY_DIR}/generated FILES ${headers})
+  endif()
   target_link_libraries(${name} ${scope} ${public_links})
   # The fuzzer follows what decodes; the rest runs as fast as in any build with sanitizers.
   if(folder MATCHES "^(common|daemon/sensor|clients/relay|clients/skeleton)(/|$)")

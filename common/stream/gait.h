@@ -1,17 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <string>
+
+#include "common/stream/character.h"
 
 namespace footing::stream {
 
-enum class Gait { kUnspecified = 0, kStep = 1, kWalk = 2, kRun = 3, kJump = 4 };
-
-/// All gaits, in the order of their numbers: what has a place for each gait is as long as this.
-inline constexpr std::array kGaits{Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
-
-/// A gait's place in kGaits; kUnspecified has the first.
+/// A gait's place in kGaits, which what has a place for each gait is as long as; kUnspecified has
+/// the first.
 constexpr std::size_t IndexOf(Gait gait) {
   for (std::size_t i = 0; i < kGaits.size(); ++i) {
     if (kGaits[i] == gait) return i;
@@ -26,12 +22,5 @@ constexpr Gait GaitNumbered(int number) {
   }
   return Gait::kUnspecified;
 }
-
-/// "step", "walk", "run", "jump".
-const char* Name(Gait gait);
-/// The gait of that name; kUnspecified when there is none.
-Gait GaitNamed(const std::string& name);
-/// "step, walk, run, jump": for errors.
-std::string GaitNames();
 
 }  // namespace footing::stream

@@ -24,26 +24,6 @@ bool ShowsAsOneLine(std::string_view text) {
 
 }  // namespace
 
-const char* Name(GamePhase phase) {
-  switch (phase) {
-    case GamePhase::kUnspecified:
-      return "unspecified";
-    case GamePhase::kWaiting:
-      return "waiting";
-    case GamePhase::kCountdown:
-      return "countdown";
-    case GamePhase::kRound:
-      return "round";
-    case GamePhase::kPause:
-      return "pause";
-    case GamePhase::kOver:
-      return "over";
-    case GamePhase::kLeft:
-      return "left";
-  }
-  return "unspecified";
-}
-
 const char* WhyNotAPlayerName(std::string_view name) {
   if (name.empty() || name.size() > kMostNameBytes)
     return "a player's name must have 1 to 24 bytes";

@@ -6,8 +6,11 @@ The table is written by common/cmake/module.cmake. Checked, in every .h and .cc 
 folder, however deep: a module of ours (with quotes or angle brackets) is named in DEPS (or, from a
 .cc file, PRIVATE_DEPS); a library from outside is named the same way; pure code uses no thread,
 lock, socket, file, log, protobuf or clock; ours are included from the root, with quotes; a .cc
-file begins with the header of its name, which is thereby compiled alone.
+file begins with the header of its name, which is thereby compiled alone. Headers that the build
+generates lie in the folder `generated` beside the table, under the path by which they are included,
+and are checked too.
 """
+import itertools
 import pathlib
 import re
 import sys
@@ -67,34 +70,34 @@ def owner_of(path, modules):
 
 
 def check(root, table):
-    root = pathlib.Path(root)
+    roots = [pathlib.Path(root), pathlib.Path(table).parent / "generated"]
     modules = read_table(table)
     tops = ("common", "daemon", "clients", "proto")
     errors = []
-    for top in tops:
-        for path in sorted((root / top).rglob("*")):
+    for base, top in itertools.product(roots, tops):
+        for path in sorted((base / top).rglob("*")):
             if path.suffix not in (".h", ".cc", ".cpp", ".hpp", ".c"):
                 continue
-            relative = path.relative_to(root).as_posix()
+            relative = path.relative_to(base).as_posix()
             folder = owner_of(relative, modules)
             if folder is None:
                 errors.append(f"{relative}: belongs to no module; name its folder in add_module")
                 continue
-            errors += check_file(root, relative, folder, modules, tops)
+            errors += check_file(path, roots, relative, folder, modules, tops)
     return errors
 
 
-def check_file(root, relative, folder, modules, tops):
+def check_file(path, roots, relative, folder, modules, tops):
     module = modules[folder]
     allowed = module["names"] | module["public"]
     if not relative.endswith(".h"):
         allowed = allowed | module["private"]
     # A program's folder may hold a module of the same folder: its names are allowed to each other.
-    text = COMMENT.sub("", (root / relative).read_text())
+    text = COMMENT.sub("", path.read_text())
     errors = []
     own = relative.removesuffix(".cc") + ".h"
     includes = INCLUDE.findall(text)
-    if relative.endswith(".cc") and (root / own).exists() and [i for _, i in includes[:1]] != [own]:
+    if relative.endswith(".cc") and path.with_suffix(".h").exists() and [i for _, i in includes[:1]] != [own]:
         errors.append(f"{relative}: include {own} first, so that it is compiled alone")
     for quote, included in includes:
         ours = included.split("/")[0] in tops and "/" in included
@@ -107,7 +110,7 @@ def check_file(root, relative, folder, modules, tops):
                 errors.append(f"{relative}: includes {included} without naming footing_proto")
         elif ours:
             target = owner_of(included, modules)
-            if target is None or not (root / included).exists():
+            if target is None or not any((base / included).exists() for base in roots):
                 errors.append(f"{relative}: includes {included}, which is in no module")
             elif not (modules[target]["names"] & allowed):
                 errors.append(f"{relative}: includes {included} without naming its module in DEPS")

@@ -115,6 +115,11 @@ class Includes(unittest.TestCase):
         self.assertEqual(includes({"common/a/a.h": "", "common/b/b.cc":
                                    '#include "common/a/a.h"\n#include <vector>\n'}, self.TABLE), [])
 
+    def test_generated_headers_are_found_and_checked(self):
+        files = {"generated/common/a/a.h": "#pragma once\n", "common/b/b.cc": '#include "common/a/a.h"\n'}
+        self.assertEqual(includes(files, self.TABLE), [])
+        self.found("generated/common/a/x.h", "#include <thread>\n", "pure code includes")
+
     def test_a_module_must_be_named(self):
         self.found("common/a/x.cc", '#include "common/b/b.h"\n', "without naming its module")
 

@@ -10,6 +10,7 @@
 #include "common/base/text.h"
 #include "common/stream/interface_roles.h"
 #include "common/stream/leg_turn.h"
+#include "common/stream/roles.h"
 
 namespace footing::study::plan {
 namespace {

@@ -8,6 +8,7 @@
 #include "clients/view/scene/text.h"
 #include "clients/view/scene/timeline.h"
 #include "common/runtime/clock.h"
+#include "common/stream/trial.h"
 
 namespace footing::view {
 namespace {

@@ -428,47 +428,6 @@ constexpr int kMaxParts = 256;
 
 using wire::Finite;
 
-scene::BodyFoot FootOf(const v1::BodyFoot& from) {
-  return {from.contact(),
-          from.valid(),
-          wire::FromProto(from.position_m()),
-          wire::FromProto(from.variance_m2()),
-          Finite(from.load_n()),
-          from.cop_valid(),
-          wire::FromProto(from.cop_m()),
-          Finite(from.airborne_s())};
-}
-
-scene::BodyState BodyOf(const v1::BodyState& from) {
-  scene::BodyState body;
-  body.subject = from.subject();
-  body.mode = from.mode();
-  body.calibrated = from.calibrated();
-  body.calibration_progress = Finite(from.calibration_progress());
-  body.calibration_restarts = from.calibration_restarts();
-  body.mass_kg = Finite(from.mass_kg());
-  body.height_m = Finite(from.height_m());
-  body.lag_s = Finite(from.lag_s());
-  body.momentum_valid = from.momentum_valid();
-  body.com_variance_m2 = wire::FromProto(from.com_variance_m2());
-  body.angular_momentum_kgm2ps = wire::FromProto(from.angular_momentum_kgm2ps());
-  for (int i = 0; i < std::min(from.feet_size(), 2); ++i) {
-    body.feet[static_cast<std::size_t>(i)] = FootOf(from.feet(i));
-  }
-  body.resets = from.resets();
-  for (int i = 0; i < std::min(from.link_sd_m_size(), kMaxParts); ++i) {
-    body.link_sd_m.push_back(Finite(from.link_sd_m(i)));
-  }
-  body.note = from.note();
-  body.solve_us = Finite(from.solve_us());
-  for (int i = 0; i < std::min(from.hands_seen_size(), 2); ++i) {
-    body.hands_seen[static_cast<std::size_t>(i)] = from.hands_seen(i);
-  }
-  body.hands_source = from.hands_source();
-  body.contact_source = from.contact_source();
-  return body;
-}
-
 scene::ReferencePose ReferenceOf(const v1::ReferencePose& from, std::int64_t received_ns,
                                  std::int64_t offset_ns) {
   scene::ReferencePose reference;
@@ -498,7 +457,7 @@ scene::CharacterPose CharacterOf(const v1::Character& from) {
   pose.phase = from.gait().phase();
   pose.interface = wire::FromProto(from.interface());
   pose.simulated_input = from.simulated_input();
-  if (from.has_body()) pose.body = BodyOf(from.body());
+  if (from.has_body()) pose.body = wire::FromProto(from.body());
   if (from.has_trial()) pose.trial = wire::FromProto(from.trial());
   return pose;
 }

@@ -7,6 +7,7 @@
 
 #include "clients/view/scene/text.h"
 #include "common/base/units.h"
+#include "common/stream/trial.h"
 
 namespace footing::render {
 namespace {

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "common/body/landmarks.h"
+#include "common/stream/body_state.h"
 #include "common/stream/character.h"
 #include "common/stream/game.h"
 
@@ -105,41 +106,8 @@ void AddPerson(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& p_m,
 void AddLimbs(const std::vector<int>& parents, const std::vector<float>& radii_m,
               const std::vector<Eigen::Vector3d>& p_m, const Colour& colour, PartList& parts);
 
-/// One foot of a reconstructed body.
-struct BodyFoot {
-  bool contact = false;
-  bool valid = false;
-  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();
-  double load_n = 0;
-  bool cop_valid = false;
-  Eigen::Vector3d cop_m = Eigen::Vector3d::Zero();
-  double airborne_s = 0;
-};
-
-/// Estimator state of a reconstructed body and its quality: character.proto says what each field
-/// means.
-struct BodyState {
-  std::string subject;
-  std::string mode;
-  bool calibrated = false;
-  double calibration_progress = 0;  ///< 0 to 1.
-  std::uint32_t calibration_restarts = 0;
-  double mass_kg = 0;
-  double height_m = 0;
-  double lag_s = 0;
-  bool momentum_valid = false;
-  Eigen::Vector3d com_variance_m2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular_momentum_kgm2ps = Eigen::Vector3d::Zero();
-  std::array<BodyFoot, 2> feet;  ///< Left, right.
-  std::uint32_t resets = 0;
-  std::vector<double> link_sd_m;
-  std::string note;
-  double solve_us = 0;
-  std::array<bool, 2> hands_seen{};
-  std::string hands_source;    ///< "wiimote", a tracker's name; empty: no source reports the hands.
-  std::string contact_source;  ///< "boards" or "insoles"; empty of a server that does not say.
-};
+using stream::BodyFoot;
+using stream::BodyState;
 
 /// The true pose of a simulated body.
 struct ReferencePose {

@@ -7,6 +7,7 @@
 
 #include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/stream/trial.h"
 
 namespace footing::scene {
 namespace {

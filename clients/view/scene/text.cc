@@ -5,6 +5,7 @@
 
 #include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/stream/trial.h"
 #include "common/stream/user_interface.h"
 
 namespace footing::scene {

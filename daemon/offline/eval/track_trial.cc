@@ -8,6 +8,7 @@
 #include "common/base/units.h"
 #include "common/board/layout.h"
 #include "common/stream/interface_roles.h"
+#include "common/stream/roles.h"
 #include "common/virtual/people/driver.h"
 #include "common/virtual/people/person.h"
 #include "daemon/simulation/biped/trial.h"

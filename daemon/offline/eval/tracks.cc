@@ -20,6 +20,7 @@
 #include "common/cli/cli.h"
 #include "common/runtime/files.h"
 #include "common/stream/leg_turn.h"
+#include "common/stream/trial.h"
 #include "common/virtual/options/sensor_options.h"
 #include "daemon/offline/eval/report.h"
 #include "daemon/offline/eval/track_trial.h"

@@ -6,6 +6,7 @@
 
 #include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/stream/roles.h"
 
 namespace footing::sensor {
 namespace {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/units.h"
+#include "common/stream/trial.h"
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/biped/model.h"

@@ -5,6 +5,7 @@
 
 #include "common/base/result.h"
 #include "common/base/text.h"
+#include "common/stream/gait.h"
 
 namespace footing::gait {
 namespace {

@@ -2,161 +2,154 @@
 
 #include <algorithm>
 
-#include "common/wire/fields.h"
+#include "common/stream/gait.h"
+#include "common/wire/scalar.h"
+#include "common/wire/wire.h"
 
 namespace footing::gait_service {
 namespace {
 
+using wire::Finite;
 using wire::FromProto;
 using wire::ToProto;
 
-template <typename Way>
-void Fields(Way way, const mapping::LimbFeatures&) {
-  FOOTING_FIELD(present);
-  FOOTING_FIELD(moving);
-  FOOTING_FIELD(frequency_valid);
-  FOOTING_FIELD(frequency_hz);
-  FOOTING_FIELD(amplitude_valid);
-  FOOTING_FIELD(amplitude_mps2);
-  FOOTING_FIELD(inclination_valid);
-  FOOTING_FIELD(roll_rad);
-  FOOTING_FIELD(pitch_rad);
-  FOOTING_FIELD(swing_valid);
-  FOOTING_FIELD(swing_rad);
-  FOOTING_FIELD(mounted);
-}
-FOOTING_BOTH_WAYS_OF(mapping::LimbFeatures, v1::HandInput)
-
-template <typename Way>
-void Fields(Way way, const mapping::StickInput&) {
-  FOOTING_FIELD(present);
-  FOOTING_FIELD(x);
-  FOOTING_FIELD(y);
-  FOOTING_FIELD(pressed);
-  FOOTING_FIELD(presses);
-  FOOTING_ENUM(DeviceRole, role);
-}
-FOOTING_BOTH_WAYS_OF(mapping::StickInput, v1::StickInput)
-
-template <typename Way>
-void Fields(Way way, const mapping::BoardInput&) {
-  FOOTING_FIELD(present);
-  if constexpr (Way::kOut) {
-    for (const double corner_n : way.value.corners_n) {
-      way.message.add_corners_n(wire::Sent(corner_n));
-    }
-  } else {
-    auto& corners_n = way.value.corners_n;
-    const int count = std::min(way.message.corners_n_size(), static_cast<int>(corners_n.size()));
-    std::transform(way.message.corners_n().begin(), way.message.corners_n().begin() + count,
-                   corners_n.begin(), [](double corner_n) { return wire::Received(corner_n); });
-  }
-  FOOTING_FIELD(cop_valid);
-  FOOTING_FIELD(cop_x_m);
-  FOOTING_FIELD(cop_y_m);
-}
-FOOTING_BOTH_WAYS_OF(mapping::BoardInput, v1::BoardInput)
-
 /// One part of a person's inputs; what is not there is left out.
-#define FOOTING_INPUT_OF(member, name)                           \
-  if constexpr (Way::kOut) {                                     \
-    if (way.value.member != decltype(way.value.member){}) {      \
-      *way.message.mutable_##name() = ToProto(way.value.member); \
-    }                                                            \
-  } else {                                                       \
-    way.value.member = FromProto(way.message.name());            \
+template <typename Part, typename Message>
+void WriteIfAny(const Part& part, v1::AppliedInput& message,
+                Message* (v1::AppliedInput::*mutable_part)()) {
+  if (part != Part{}) wire::Write(part, *(message.*mutable_part)());
+}
+
+/// What a person wears, holds and stands on.
+void WriteFeatures(const mapping::Inputs& inputs, v1::AppliedInput& message) {
+  using Message = v1::AppliedInput;
+  wire::Write(inputs.hands.left, *message.mutable_left());
+  wire::Write(inputs.hands.right, *message.mutable_right());
+  message.set_phase_valid(inputs.hands.phase_valid);
+  message.set_phase_rad(Finite(inputs.hands.phase_rad));
+  WriteIfAny(inputs.legs.left, message, &Message::mutable_left_leg);
+  WriteIfAny(inputs.legs.right, message, &Message::mutable_right_leg);
+  message.set_legs_phase_valid(inputs.legs.phase_valid);
+  message.set_legs_phase_rad(Finite(inputs.legs.phase_rad));
+  WriteIfAny(inputs.head, message, &Message::mutable_head);
+  WriteIfAny(inputs.trunk, message, &Message::mutable_trunk);
+  WriteIfAny(inputs.stick, message, &Message::mutable_stick);
+  WriteIfAny(inputs.left_board, message, &Message::mutable_left_board);
+  WriteIfAny(inputs.right_board, message, &Message::mutable_right_board);
+  message.set_simulated(inputs.simulated);
+}
+
+mapping::Inputs FeaturesFrom(const v1::AppliedInput& message) {
+  mapping::Inputs inputs;
+  inputs.hands = {FromProto(message.left()), FromProto(message.right()), message.phase_valid(),
+                  Finite(message.phase_rad())};
+  inputs.legs = {FromProto(message.left_leg()), FromProto(message.right_leg()),
+                 message.legs_phase_valid(), Finite(message.legs_phase_rad())};
+  inputs.head = FromProto(message.head());
+  inputs.trunk = FromProto(message.trunk());
+  inputs.stick = FromProto(message.stick());
+  inputs.left_board = FromProto(message.left_board());
+  inputs.right_board = FromProto(message.right_board());
+  inputs.simulated = message.simulated();
+  return inputs;
+}
+
+void WriteInterface(const engine::InterfaceInputs& interface, v1::AppliedInput& message) {
+  message.set_interface_number(interface.number);
+  message.set_interface(static_cast<v1::UserInterface>(interface.options.interface));
+  message.set_turn_by(static_cast<v1::TurnSource>(interface.options.leg.turn_by));
+  message.set_boards_may_be_left(interface.options.boards_may_be_left);
+}
+
+engine::InterfaceInputs InterfaceFrom(const v1::AppliedInput& message) {
+  engine::InterfaceInputs interface;
+  interface.number = message.interface_number();
+  const bool named = v1::UserInterface_IsValid(message.interface()) &&
+                     message.interface() != v1::USER_INTERFACE_UNSPECIFIED;
+  if (!named) return interface;
+  interface.options.interface = static_cast<stream::UserInterface>(message.interface());
+  interface.options.leg.turn_by = v1::TurnSource_IsValid(message.turn_by())
+                                      ? static_cast<stream::TurnSource>(message.turn_by())
+                                      : stream::TurnSource::kUnspecified;
+  interface.options.boards_may_be_left = message.boards_may_be_left();
+  return interface;
+}
+
+void WriteAppends(const engine::EngineInputs& inputs, v1::AppliedInput& message) {
+  message.set_append_number(inputs.append_number);
+  for (int i = 0; i < inputs.append_count; ++i) {
+    const terrain::NewSegment& segment = inputs.appends[static_cast<std::size_t>(i)];
+    v1::AppendedSegment& one = *message.add_appends();
+    one.set_length_m(Finite(segment.length_m));
+    one.set_slope_rad(Finite(segment.slope_rad));
+    one.set_curve_rad(Finite(segment.curve_rad));
+    one.set_step_m(Finite(segment.step_m));
+    one.set_pit(segment.pit);
   }
-
-/// Fields of a person's devices: worn, held and stood on.
-template <typename Way>
-void Fields(Way way, const mapping::Inputs&) {
-  FOOTING_MESSAGE_OF(hands.left, left);
-  FOOTING_MESSAGE_OF(hands.right, right);
-  FOOTING_FIELD_OF(hands.phase_valid, phase_valid);
-  FOOTING_FIELD_OF(hands.phase_rad, phase_rad);
-  FOOTING_INPUT_OF(legs.left, left_leg);
-  FOOTING_INPUT_OF(legs.right, right_leg);
-  FOOTING_FIELD_OF(legs.phase_valid, legs_phase_valid);
-  FOOTING_FIELD_OF(legs.phase_rad, legs_phase_rad);
-  FOOTING_INPUT_OF(head, head);
-  FOOTING_INPUT_OF(trunk, trunk);
-  FOOTING_INPUT_OF(stick, stick);
-  FOOTING_INPUT_OF(left_board, left_board);
-  FOOTING_INPUT_OF(right_board, right_board);
-  FOOTING_FIELD(simulated);
 }
-#undef FOOTING_INPUT_OF
 
-template <typename Way>
-void Fields(Way way, const terrain::NewSegment&) {
-  FOOTING_FIELD(length_m);
-  FOOTING_FIELD(slope_rad);
-  FOOTING_FIELD(curve_rad);
-  FOOTING_FIELD(step_m);
-  FOOTING_FIELD(pit);
-}
-FOOTING_BOTH_WAYS_OF(terrain::NewSegment, v1::AppendedSegment)
-
-template <typename Way>
-void Fields(Way way, const engine::InterfaceInputs&) {
-  FOOTING_FIELD_OF(number, interface_number);
-  FOOTING_ENUM_OF(UserInterface, options.interface, interface);
-  FOOTING_ENUM_OF(TurnSource, options.leg.turn_by, turn_by);
-  FOOTING_FIELD_OF(options.boards_may_be_left, boards_may_be_left);
-  if constexpr (!Way::kOut) {
-    const bool named = way.value.options.interface != stream::UserInterface::kUnspecified;
-    if (!named) way.value.options = {};
+void TakeAppends(const v1::AppliedInput& message, engine::EngineInputs& inputs) {
+  inputs.append_number = message.append_number();
+  inputs.append_count = std::min(message.appends_size(), engine::kMaxAppends);
+  for (int i = 0; i < inputs.append_count; ++i) {
+    const v1::AppendedSegment& one = message.appends(i);
+    inputs.appends[static_cast<std::size_t>(i)] = {Finite(one.length_m()), Finite(one.slope_rad()),
+                                                   Finite(one.curve_rad()), Finite(one.step_m()),
+                                                   one.pit()};
   }
 }
-
-template <typename Way>
-void Fields(Way way, const engine::EngineInputs&) {
-  FOOTING_FIELD(features_number);
-  FOOTING_PART(features);
-  FOOTING_PART(interface);
-  FOOTING_FIELD(direct);
-  FOOTING_ENUM_OF(Gait, direct_command.gait, direct_gait);
-  FOOTING_FIELD_OF(direct_command.speed_mps, direct_speed_mps);
-  FOOTING_FIELD_OF(direct_command.height_m, direct_height_m);
-  FOOTING_FIELD_OF(direct_command.turn_per_step_rad, direct_turn_rad);
-  FOOTING_FIELD(push_number);
-  FOOTING_FIELD_OF(push_impulse_W_ns.x(), push_x_ns);
-  FOOTING_FIELD_OF(push_impulse_W_ns.y(), push_y_ns);
-  FOOTING_FIELD(put_back_number);
-  FOOTING_FIELD(append_number);
-  if constexpr (Way::kOut) {
-    for (int i = 0; i < way.value.append_count; ++i) {
-      *way.message.add_appends() = ToProto(way.value.appends[static_cast<std::size_t>(i)]);
-    }
-  } else {
-    way.value.append_count = std::min(way.message.appends_size(), engine::kMaxAppends);
-    for (int i = 0; i < way.value.append_count; ++i) {
-      way.value.appends[static_cast<std::size_t>(i)] = FromProto(way.message.appends(i));
-    }
-  }
-  FOOTING_FIELD_OF(trial.number, trial_number);
-  if constexpr (Way::kOut) {
-    way.message.set_trial_task(static_cast<std::uint32_t>(way.value.trial.task + 1));
-  } else {
-    way.value.trial.task = static_cast<int>(way.message.trial_task()) - 1;
-  }
-  FOOTING_FIELD_OF(trial.stopped_below, trials_stopped_below);
-  FOOTING_FIELD_OF(trial.track_number, track_number);
-}
-
-template <typename Way>
-void Fields(Way way, const Applied&) {
-  FOOTING_FIELD(step);
-  FOOTING_FIELD_OF(inputs.sensor_epoch, sensor_epoch);
-  FOOTING_FIELD_OF(inputs.sensor_sequence, sensor_sequence);
-  FOOTING_PART(inputs.engine);
-}
-FOOTING_BOTH_WAYS_OF(Applied, v1::AppliedInput)
 
 }  // namespace
 
-v1::AppliedInput ToAppliedInput(const Applied& applied) { return ToProto(applied); }
+v1::AppliedInput ToAppliedInput(const Applied& applied) {
+  v1::AppliedInput message;
+  message.set_step(applied.step);
+  message.set_sensor_epoch(applied.inputs.sensor_epoch);
+  message.set_sensor_sequence(applied.inputs.sensor_sequence);
+  const engine::EngineInputs& inputs = applied.inputs.engine;
+  message.set_features_number(inputs.features_number);
+  WriteFeatures(inputs.features, message);
+  WriteInterface(inputs.interface, message);
+  message.set_direct(inputs.direct);
+  message.set_direct_gait(static_cast<v1::Gait>(inputs.direct_command.gait));
+  message.set_direct_speed_mps(Finite(inputs.direct_command.speed_mps));
+  message.set_direct_height_m(Finite(inputs.direct_command.height_m));
+  message.set_direct_turn_rad(Finite(inputs.direct_command.turn_per_step_rad));
+  message.set_push_number(inputs.push_number);
+  message.set_push_x_ns(Finite(inputs.push_impulse_W_ns.x()));
+  message.set_push_y_ns(Finite(inputs.push_impulse_W_ns.y()));
+  message.set_put_back_number(inputs.put_back_number);
+  WriteAppends(inputs, message);
+  message.set_trial_number(inputs.trial.number);
+  message.set_trial_task(static_cast<std::uint32_t>(inputs.trial.task + 1));
+  message.set_trials_stopped_below(inputs.trial.stopped_below);
+  message.set_track_number(inputs.trial.track_number);
+  return message;
+}
 
-Applied FromAppliedInput(const v1::AppliedInput& message) { return FromProto(message); }
+Applied FromAppliedInput(const v1::AppliedInput& message) {
+  Applied applied;
+  applied.step = message.step();
+  applied.inputs.sensor_epoch = message.sensor_epoch();
+  applied.inputs.sensor_sequence = message.sensor_sequence();
+  engine::EngineInputs& inputs = applied.inputs.engine;
+  inputs.features_number = message.features_number();
+  inputs.features = FeaturesFrom(message);
+  inputs.interface = InterfaceFrom(message);
+  inputs.direct = message.direct();
+  inputs.direct_command.gait = stream::GaitNumbered(message.direct_gait());
+  inputs.direct_command.speed_mps = Finite(message.direct_speed_mps());
+  inputs.direct_command.height_m = Finite(message.direct_height_m());
+  inputs.direct_command.turn_per_step_rad = Finite(message.direct_turn_rad());
+  inputs.push_number = message.push_number();
+  inputs.push_impulse_W_ns = {Finite(message.push_x_ns()), Finite(message.push_y_ns())};
+  inputs.put_back_number = message.put_back_number();
+  TakeAppends(message, inputs);
+  inputs.trial.number = message.trial_number();
+  inputs.trial.task = static_cast<int>(message.trial_task()) - 1;
+  inputs.trial.stopped_below = message.trials_stopped_below();
+  inputs.trial.track_number = message.track_number();
+  return applied;
+}
 
 }  // namespace footing::gait_service

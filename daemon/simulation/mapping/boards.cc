@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <numeric>
 #include "common/base/units.h"
 #include "daemon/simulation/biped/body_state.h"
 
@@ -48,7 +49,8 @@ constexpr double kRunCycles = 1;
 constexpr double kWalkCycles = 0.5;
 
 board::FootLoad FootOn(const BoardInput& board) {
-  return {board.LoadN(), board.cop_valid, board.cop_x_m};
+  const double load_n = std::accumulate(board.corners_n.begin(), board.corners_n.end(), 0.0);
+  return {load_n, board.cop_valid, board.cop_x_m};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "common/base/result.h"
+#include "common/stream/inputs.h"
 #include "common/stream/sensor.h"
 #include "common/stream/user_interface.h"
 
@@ -17,22 +18,7 @@
 namespace footing::mapping {
 
 /// The features of one controller (gait paper, section 6).
-struct LimbFeatures {
-  bool present = false;
-  bool moving = false;
-  bool frequency_valid = false;
-  double frequency_hz = 0;
-  bool amplitude_valid = false;
-  double amplitude_mps2 = 0;  ///< Half peak to peak of the raw samples over one cycle.
-  bool inclination_valid = false;
-  double roll_rad = 0;   ///< Left side higher is positive.
-  double pitch_rad = 0;  ///< Front higher is positive.
-  bool swing_valid = false;
-  double swing_rad = 0;  ///< Horizontal swing from the controller's front, left positive.
-  bool mounted = false;  ///< The features are of the frame M of a perfect mounting, else of S.
-
-  bool operator==(const LimbFeatures&) const = default;
-};
+using LimbFeatures = stream::HandInput;
 
 /// A left and a right limb.
 struct LimbPair {
@@ -44,31 +30,9 @@ struct LimbPair {
   bool operator==(const LimbPair&) const = default;
 };
 
-/// The stick of a Nunchuk and button A of the Wiimote that it is plugged into.
-struct StickInput {
-  bool present = false;
-  double x = 0;               ///< -1 left to 1 right.
-  double y = 0;               ///< -1 back to 1 front.
-  bool pressed = false;       ///< Button A.
-  std::uint64_t presses = 0;  ///< So far; none is lost between two inputs.
-  /// Role of that Wiimote, also while it is not present; unspecified: not known.
-  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+using stream::StickInput;
 
-  bool operator==(const StickInput&) const = default;
-};
-
-/// One Balance Board.
-struct BoardInput {
-  bool present = false;
-  /// Corner forces: top left, top right, bottom left, bottom right.
-  std::array<double, 4> corners_n{};
-  bool cop_valid = false;
-  double cop_x_m = 0;  ///< In W: forward.
-  double cop_y_m = 0;  ///< In W: to the left.
-
-  double LoadN() const { return corners_n[0] + corners_n[1] + corners_n[2] + corners_n[3]; }
-  bool operator==(const BoardInput&) const = default;
-};
+using stream::BoardInput;
 
 /// The bit of `role` when its controller is missing, or is worn without a mounting; else 0.
 constexpr std::uint32_t Missing(const LimbFeatures& limb, stream::DeviceRole role) {

@@ -11,6 +11,8 @@
 #include "common/runtime/files.h"
 #include "common/wire/fields.h"
 #include "common/wire/model_file.h"
+#include "common/wire/scalar.h"
+#include "common/wire/wire.h"
 #include "daemon/simulation/pose_service/publish.h"
 #include "daemon/simulation/serving/messages.h"
 #include "daemon/simulation/serving/simulation_thread.h"
@@ -210,106 +212,107 @@ Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
 
 namespace {
 
+using wire::Finite;
 using wire::FromProto;
 using wire::ToProto;
 
-template <typename Way>
-void Fields(Way way, const momentum::Cell&) {
-  FOOTING_MESSAGE_OF(p_WS_m, position_m);
-  FOOTING_FIELD(load_n);
+void WriteCell(const momentum::Cell& cell, v1::PoseCell& message) {
+  wire::Write(cell.p_WS_m, *message.mutable_position_m());
+  message.set_load_n(Finite(cell.load_n));
 }
-FOOTING_BOTH_WAYS_OF(momentum::Cell, v1::PoseCell)
 
-template <typename Way>
-void Fields(Way way, const momentum::FootLoads&) {
-  FOOTING_FIELD(valid);
-  if constexpr (Way::kOut) {
-    for (std::size_t i = 0; i < way.value.count; ++i) {
-      *way.message.add_cells() = ToProto(way.value.cells[i]);
-    }
-  } else {
-    const auto& cells = way.message.cells();
-    way.value.count = std::min(static_cast<std::size_t>(cells.size()), momentum::kMaxCells);
-    for (std::size_t i = 0; i < way.value.count; ++i) {
-      way.value.cells[i] = FromProto(cells.Get(static_cast<int>(i)));
-    }
+momentum::Cell CellFrom(const v1::PoseCell& message) {
+  return {FromProto(message.position_m()), Finite(message.load_n())};
+}
+
+/// As many cells as a foot can have.
+template <typename Cells>
+std::size_t CountOf(const Cells& cells) {
+  return std::min(static_cast<std::size_t>(cells.size()), momentum::kMaxCells);
+}
+
+void WriteLoads(const momentum::FootLoads& loads, v1::PoseFoot& message) {
+  message.set_valid(loads.valid);
+  for (std::size_t i = 0; i < loads.count; ++i) WriteCell(loads.cells[i], *message.add_cells());
+}
+
+void TakeLoads(const v1::PoseFoot& message, momentum::FootLoads& loads) {
+  loads.valid = message.valid();
+  loads.count = CountOf(message.cells());
+  for (std::size_t i = 0; i < loads.count; ++i) {
+    loads.cells[i] = CellFrom(message.cells(static_cast<int>(i)));
   }
 }
 
 /// Valid where there is an impulse for each corner.
-template <typename Way>
-void Fields(Way way, const board::BoardImpulse&) {
-  if constexpr (Way::kOut) {
-    if (!way.value.valid) return;
-    for (const double impulse_ns : way.value.impulse_ns) way.message.add_impulse_ns(impulse_ns);
-  } else {
-    const auto& impulses = way.message.impulse_ns();
-    way.value.valid = impulses.size() == static_cast<int>(board::kCorners);
-    if (!way.value.valid) return;
-    std::copy(impulses.begin(), impulses.end(), way.value.impulse_ns.begin());
-  }
-  FOOTING_FIELD(sampled_s);
+void WriteImpulse(const board::BoardImpulse& impulse, v1::PoseFoot& message) {
+  if (!impulse.valid) return;
+  for (const double impulse_ns : impulse.impulse_ns) message.add_impulse_ns(impulse_ns);
+  message.set_sampled_s(Finite(impulse.sampled_s));
+}
+
+void TakeImpulse(const v1::PoseFoot& message, board::BoardImpulse& impulse) {
+  const auto& impulses = message.impulse_ns();
+  impulse.valid = impulses.size() == static_cast<int>(board::kCorners);
+  if (!impulse.valid) return;
+  std::copy(impulses.begin(), impulses.end(), impulse.impulse_ns.begin());
+  impulse.sampled_s = Finite(message.sampled_s());
 }
 
 /// Valid where there are cells.
-template <typename Way>
-void Fields(Way way, const reconstruction::InsoleFoot&) {
-  if constexpr (Way::kOut) {
-    for (std::size_t i = 0; way.value.valid && i < way.value.count; ++i) {
-      const Eigen::Vector2d& p_S_m = way.value.p_S_m[i];
-      *way.message.add_insole_cells() =
-          ToProto(momentum::Cell{{p_S_m.x(), p_S_m.y(), 0}, way.value.load_n[i]});
-    }
-  } else {
-    const auto& cells = way.message.insole_cells();
-    way.value.count = std::min(static_cast<std::size_t>(cells.size()), momentum::kMaxCells);
-    way.value.valid = way.value.count > 0;
-    for (std::size_t i = 0; i < way.value.count; ++i) {
-      const momentum::Cell cell = FromProto(cells.Get(static_cast<int>(i)));
-      way.value.p_S_m[i] = cell.p_WS_m.head<2>();
-      way.value.load_n[i] = cell.load_n;
-    }
+void WriteInsole(const reconstruction::InsoleFoot& insole, v1::PoseFoot& message) {
+  for (std::size_t i = 0; insole.valid && i < insole.count; ++i) {
+    const Eigen::Vector2d& p_S_m = insole.p_S_m[i];
+    WriteCell({{p_S_m.x(), p_S_m.y(), 0}, insole.load_n[i]}, *message.add_insole_cells());
   }
 }
 
-template <typename Way>
-void Fields(Way way, const reconstruction::HandInput&) {
-  FOOTING_FIELD(valid);
-  FOOTING_MESSAGE_OF(p_W_m, position_m);
-  FOOTING_MESSAGE(sd_m);
-  if (!Way::kOut || !way.value.covariance_m2.isZero(0)) {
-    FOOTING_MESSAGE(covariance_m2);
+void TakeInsole(const v1::PoseFoot& message, reconstruction::InsoleFoot& insole) {
+  insole.count = CountOf(message.insole_cells());
+  insole.valid = insole.count > 0;
+  for (std::size_t i = 0; i < insole.count; ++i) {
+    const momentum::Cell cell = CellFrom(message.insole_cells(static_cast<int>(i)));
+    insole.p_S_m[i] = cell.p_WS_m.head<2>();
+    insole.load_n[i] = cell.load_n;
   }
-  FOOTING_FIELD(of_skeleton);
 }
 
-template <typename Way>
-void Fields(Way way, const arms::ArmEstimate&) {
-  FOOTING_MESSAGE_OF(directions.upper, upper);
-  FOOTING_MESSAGE_OF(directions.hinge, hinge);
-  FOOTING_MESSAGE_OF(directions.forearm, forearm);
-  FOOTING_MESSAGE(upper_sd);
-  FOOTING_MESSAGE(hinge_sd);
-  FOOTING_MESSAGE(forearm_sd);
-}
-FOOTING_BOTH_WAYS_OF(arms::ArmEstimate, v1::PoseArm)
-
-template <typename Way>
-void Fields(Way way, const Subject&) {
-  FOOTING_FIELD_OF(code, subject_code);
-  FOOTING_FIELD_OF(height_m, subject_height_m);
-  FOOTING_FIELD_OF(mass_kg, subject_mass_kg);
-  FOOTING_FIELD_OF(foot_length_m, subject_foot_length_m);
+void WriteHand(const reconstruction::HandInput& hand, v1::PoseHand& message) {
+  message.set_valid(hand.valid);
+  wire::Write(hand.p_W_m, *message.mutable_position_m());
+  wire::Write(hand.sd_m, *message.mutable_sd_m());
+  if (!hand.covariance_m2.isZero(0)) {
+    wire::Write(hand.covariance_m2, *message.mutable_covariance_m2());
+  }
+  message.set_of_skeleton(hand.of_skeleton);
 }
 
-template <typename Value, typename Message>
-void Set(const Value& value, Message& message) {
-  Fields(wire::Out<Value, Message>{value, message}, value);
+void TakeHand(const v1::PoseHand& message, reconstruction::HandInput& hand) {
+  hand.valid = message.valid();
+  hand.p_W_m = FromProto(message.position_m());
+  hand.sd_m = FromProto(message.sd_m());
+  hand.covariance_m2 = FromProto(message.covariance_m2());
+  hand.of_skeleton = message.of_skeleton();
 }
 
-template <typename Value, typename Message>
-void Get(const Message& message, Value& value) {
-  Fields(wire::In<Value, Message>{value, message}, value);
+void WriteArm(const arms::ArmEstimate& arm, v1::PoseArm& message) {
+  wire::Write(arm.directions.upper, *message.mutable_upper());
+  wire::Write(arm.directions.hinge, *message.mutable_hinge());
+  wire::Write(arm.directions.forearm, *message.mutable_forearm());
+  wire::Write(arm.upper_sd, *message.mutable_upper_sd());
+  wire::Write(arm.hinge_sd, *message.mutable_hinge_sd());
+  wire::Write(arm.forearm_sd, *message.mutable_forearm_sd());
+}
+
+arms::ArmEstimate ArmFrom(const v1::PoseArm& message) {
+  arms::ArmEstimate arm;
+  arm.directions.upper = FromProto(message.upper());
+  arm.directions.hinge = FromProto(message.hinge());
+  arm.directions.forearm = FromProto(message.forearm());
+  arm.upper_sd = FromProto(message.upper_sd());
+  arm.hinge_sd = FromProto(message.hinge_sd());
+  arm.forearm_sd = FromProto(message.forearm_sd());
+  return arm;
 }
 
 /// Adds the joints that are seen.
@@ -336,22 +339,22 @@ reconstruction::JointInputs GetJoints(const v1::PoseInput& message) {
 }
 
 void SetSide(const PoseInputs& inputs, std::size_t side, v1::PoseFoot& foot, v1::PoseHand& hand) {
-  Set(inputs.sensors.loads.feet[side], foot);
-  Set(inputs.impulses[side], foot);
-  Set(inputs.insoles[side], foot);
-  Set(inputs.sensors.hands[side], hand);
+  WriteLoads(inputs.sensors.loads.feet[side], foot);
+  WriteImpulse(inputs.impulses[side], foot);
+  WriteInsole(inputs.insoles[side], foot);
+  WriteHand(inputs.sensors.hands[side], hand);
   const arms::ArmEstimate& arm = inputs.sensors.arms[side];
-  if (arm.valid) *hand.mutable_arm() = ToProto(arm);
+  if (arm.valid) WriteArm(arm, *hand.mutable_arm());
 }
 
 void GetSide(const v1::PoseFoot& foot, const v1::PoseHand& hand, std::size_t side,
              PoseInputs& inputs) {
-  Get(foot, inputs.sensors.loads.feet[side]);
-  Get(foot, inputs.impulses[side]);
-  Get(foot, inputs.insoles[side]);
-  Get(hand, inputs.sensors.hands[side]);
+  TakeLoads(foot, inputs.sensors.loads.feet[side]);
+  TakeImpulse(foot, inputs.impulses[side]);
+  TakeInsole(foot, inputs.insoles[side]);
+  TakeHand(hand, inputs.sensors.hands[side]);
   arms::ArmEstimate& arm = inputs.sensors.arms[side];
-  if (hand.has_arm()) arm = FromProto(hand.arm());
+  if (hand.has_arm()) arm = ArmFrom(hand.arm());
   arm.valid = hand.has_arm();
 }
 
@@ -370,7 +373,10 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   SetJoints(inputs.sensors.joints, pose);
   pose.set_calibrate_number(inputs.calibrate_number);
   pose.set_subject_number(inputs.subject_number);
-  Set(subject, pose);
+  pose.set_subject_code(wire::Utf8(subject.code));
+  pose.set_subject_height_m(Finite(subject.height_m));
+  pose.set_subject_mass_kg(Finite(subject.mass_kg));
+  pose.set_subject_foot_length_m(Finite(subject.foot_length_m));
   return message;
 }
 
@@ -394,8 +400,12 @@ PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
 }
 
 Subject SubjectFrom(const v1::AppliedInput& message) {
+  const v1::PoseInput& pose = message.pose();
   Subject subject;
-  Get(message.pose(), subject);
+  subject.code = pose.subject_code();
+  subject.height_m = Finite(pose.subject_height_m());
+  subject.mass_kg = Finite(pose.subject_mass_kg());
+  subject.foot_length_m = Finite(pose.subject_foot_length_m());
   return subject;
 }
 

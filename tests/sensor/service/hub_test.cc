@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/base/units.h"
+#include "common/stream/roles.h"
 #include "tests/sensor/service/fixture.h"
 
 namespace footing::sensor {

@@ -140,7 +140,7 @@ TEST(InputCollector, BoardsHaveTheirCopInTheWorldAsTheyLie) {
   EXPECT_TRUE(collector.Take(tick, 2 * kMs));
   const mapping::BoardInput& board = collector.inputs().left_board;
   EXPECT_TRUE(board.present && board.cop_valid);
-  EXPECT_EQ(board.LoadN(), 100);
+  EXPECT_EQ(board.corners_n[0] + board.corners_n[1] + board.corners_n[2] + board.corners_n[3], 100);
   EXPECT_NEAR(board.cop_x_m, 0.6, 1e-12);
   EXPECT_NEAR(board.cop_y_m, 0.3, 1e-12);
   EXPECT_FALSE(collector.inputs().right_board.present);
