@@ -27,7 +27,7 @@ struct Channel {
   bool rotation = false;
   Axis axis = Axis::kX;  ///< Of the file.
   int dof = -1;          ///< Into q; -1 for the position of a joint that is not the root.
-  int stem_row = -1;     ///< Of such a position, into those of the stem (bvh_stem.h).
+  int stem_row = -1;     ///< Of such a position, into those of the stem.
 };
 
 struct Header {

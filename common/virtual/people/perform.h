@@ -30,7 +30,7 @@ struct Performance {
 Performance Perform(const Script& script, const body::Body& body, double rate_hz = 100,
                     const std::function<void(double done)>& progress = nullptr);
 
-/// What the channels make of the standard person (standard_person.cc): its joints by their names.
+/// What the channels make of the standard person (common/body/body.cc): its joints by their names.
 class Posture {
  public:
   /// `body` must outlive it, and be a StandardPerson or a CMU skeleton.

@@ -132,7 +132,7 @@ struct PoseBasis {
   int ComponentsFor(double fraction) const;
 };
 
-/// Of poses in columns: aligned motions (alignment.h) of one skeleton layout. The sign of a
+/// Of poses in columns: aligned motions (time_alignment.h) of one skeleton layout. The sign of a
 /// component is such that its greatest entry is positive.
 PoseBasis MakeBasis(const Eigen::MatrixXd& poses, std::vector<std::string> dofs);
 

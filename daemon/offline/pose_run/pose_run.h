@@ -90,7 +90,7 @@ struct Frame {
   bool kinect_crouches = false;  ///< In it the legs are lost.
 };
 
-/// What the person does in each frame (activity.h).
+/// What the person does in each frame.
 struct Activities {
   std::vector<std::string> names;
   std::vector<int> of_frame;  ///< Index of a name, or -1; empty: not given.

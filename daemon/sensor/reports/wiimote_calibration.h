@@ -113,7 +113,7 @@ class GyroscopeBias {
   Eigen::Vector3d squares_radps2_ = Eigen::Vector3d::Zero();  // Of what differs from the mean.
 };
 
-/// The MotionPlus' gyroscope, to SI in the Wiimote's sensor frame S (see acceleration.h).
+/// The MotionPlus' gyroscope, to SI in the Wiimote's sensor frame S.
 ///
 ///        front (camera)              c = (raw - zero) / (scale - zero) * degrees, of each axis
 ///            ^ y_S

@@ -135,7 +135,7 @@ struct HopMeasures {
   double rise_offset_m = -0.04;  ///< What it rises until lift-off, less a share of the extension.
 };
 
-/// The pit ahead and the plan of the hops up to it (pit_sight.h).
+/// The pit ahead and the plan of the hops up to it (controller.h).
 struct PitMemory {
   PitSighting sighting;
   HopMeasures last_hop;
@@ -154,7 +154,7 @@ struct EdgeMemory {
   double height_m = 0;                              ///< Of the higher side.
 };
 
-/// What running and jumping plan by the ground they see (ground_plan.h).
+/// What running and jumping plan by the ground they see (transition.h).
 struct GroundMemory {
   double climb_mps = 0;      ///< Of this lift-off, beyond the gait's own.
   double slope = 0;          ///< Rise over run along the heading, under this support's foot.
