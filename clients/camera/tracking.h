@@ -20,7 +20,7 @@ struct TrackingOptions {
   std::string camera_path;  ///< A new calibration is taken from there while tracking; may be empty.
   FrameOptions frames;
   bool simulated = false;  ///< The frames are not of a camera.
-  bool challenge = true;   ///< Switch a sphere's light when it is in doubt (challenge.h).
+  bool challenge = true;   ///< Switch a sphere's light when it is in doubt (light_checks.h).
   double seconds = 0;      ///< 0: until the frames end, or a signal.
   transport::Address to;
   transport::Address

@@ -84,7 +84,7 @@ struct PersonParameters {
   std::optional<Eigen::VectorXd> upright_pose = std::nullopt;
 };
 
-/// Standing height by the lengths of thighs, shanks and trunk (segments.h).
+/// Standing height by the lengths of thighs, shanks and trunk.
 double EstimateHeight(const Skeleton& skeleton, const Landmarks& landmarks,
                       const PersonParameters& person);
 
@@ -97,9 +97,9 @@ Result<Body> MakeBody(const Skeleton& skeleton, const PersonParameters& person);
 /// body's mass: what a calibration on the boards changes.
 Body WithMass(Body body, double mass_kg);
 
-/// 56 degrees of freedom, proportions of segments.h, in the joint layout of the CMU skeletons
-/// without their fingers, so that a pose of one is a pose of the other: for a user of whom nothing
-/// but height is known. Its rest pose is a T-pose with the legs 20 degrees apart.
+/// 56 degrees of freedom, proportions of the table of segments, in the joint layout of the CMU
+/// skeletons without their fingers, so that a pose of one is a pose of the other: for a user of
+/// whom nothing but height is known. Its rest pose is a T-pose with the legs 20 degrees apart.
 Skeleton StandardPerson(double height_m, Sex sex = Sex::kMean);
 
 /// T-pose of the standard person (and of a CMU skeleton): arms level, legs straight down, the

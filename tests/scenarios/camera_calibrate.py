@@ -18,7 +18,7 @@ ROLES = {1: "left_hand", 2: "right_hand"}
 
 
 def shown(led):
-    """What the simulated camera shows of a light (rendered_hands.cc): LEDs on the sensor's colours."""
+    """What the simulated camera shows of a light (clients/stream/boards.cc): LEDs on the sensor's colours."""
     rgb = [int(led[i:i + 2], 16) / 255 for i in (1, 3, 5)]
     rows = ((150, 20, 12), (22, 150, 30), (12, 30, 150))
     return [unlit + sum(a * b for a, b in zip(row, rgb)) for unlit, row in zip((16, 15, 17), rows)]

@@ -87,7 +87,7 @@ def check_rule(_):
     assert len(rules) == 1, rules
     code = (SOURCE / "daemon/sensor/devices/hid_source.cc").read_text()
     literals = re.search(r'kUdevRule =((?:\s*"(?:[^"\\]|\\.)*")+);', code)
-    assert literals, "hid_search.cc has no kUdevRule any more"
+    assert literals, "hid_source.cc has no kUdevRule any more"
     printed = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', literals[1])).replace('\\"', '"')
     assert printed == rules[0], f"printed:   {printed}\ninstalled: {rules[0]}"
     print(printed)

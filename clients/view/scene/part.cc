@@ -130,7 +130,7 @@ using body::Landmark;
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr double kThighAndShankOfHeight = 0.49;  // common/body/segments.h
+constexpr double kThighAndShankOfHeight = 0.49;  // common/body/body.h
 constexpr double kSureSdM = 0.06;                // As good as it gets: not coloured.
 constexpr double kLostSdM = 0.35;                // As red as it gets.
 

@@ -11,7 +11,7 @@
 namespace footing::virtual_sensors {
 
 /// True motion of a device on an arm or a belt, a column a frame, in its held frame S
-/// (common/body/held_frame.h).
+/// (AsHeld of common/body/skeleton.h).
 struct HeldCourse {
   Eigen::Matrix3Xd specific_force_S_mps2;
   Eigen::Matrix3Xd angular_velocity_S_radps;

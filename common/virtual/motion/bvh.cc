@@ -27,7 +27,7 @@ struct Channel {
   bool rotation = false;
   Axis axis = Axis::kX;  ///< Axis in the file.
   int dof = -1;          ///< Into q; -1 for the position of a joint that is not the root.
-  int stem_row = -1;     ///< Row of such a position in those of the stem (bvh_stem.h).
+  int stem_row = -1;     ///< Row of such a position in those of the stem.
 };
 
 struct Header {

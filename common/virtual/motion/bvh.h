@@ -18,7 +18,7 @@ struct BvhOptions {
 
 /// Reads a BVH file into W. Channels may stand in any order; the order of a joint's rotations is
 /// kept. Only the root moves, or a joint between it and the first one with several children, which
-/// then becomes the root (bvh_stem.h): position channels of another joint must stay where they
+/// then becomes the root: position channels of another joint must stay where they
 /// begin. End sites become joints "NAME_end". `file` is its name for errors, which say the line and
 /// what was expected there.
 Result<Motion> ParseBvh(std::string_view text, const std::string& file,

@@ -22,7 +22,7 @@ Motion Continuous(Motion motion);
 /// same angles whatever whole turns and triples its file has them with.
 Motion Canonical(Motion motion);
 
-/// Smoothed by LowPass (signal.h). About 8 Hz for daily movement, 14 for jumps. The rotations of
+/// Smoothed by LowPass. About 8 Hz for daily movement, 14 for jumps. The rotations of
 /// joints with three angles are smoothed as quaternions: near the singular pose of three angles a
 /// small rotation is large changes of two of them, which smoothed apart mean another pose.
 Motion Smoothed(const Motion& motion, double cutoff_hz);

@@ -41,7 +41,7 @@ struct MarkerFit {
 };
 
 /// Fits a standard person to markers in W (z up): lengths of limbs, hips, shoulders and trunk from
-/// the joint centres (joint_centres.h), each marker fixed to the segment on which it keeps still
+/// the joint centres (markers.h), each marker fixed to the segment on which it keeps still
 /// best, then, frame by frame, the pose whose markers come nearest to those seen in the sense of
 /// least squares. Frames with fewer than ten markers keep the pose before, for a second at most. An
 /// error says what is missing.

@@ -31,8 +31,8 @@ struct Performance {
 Performance Perform(const Script& script, const body::Body& body, double rate_hz = 100,
                     const std::function<void(double done)>& progress = nullptr);
 
-/// Pose of the standard person (standard_person.cc) for values of the channels: its joints by their
-/// names.
+/// Pose of the standard person (common/body/body.cc) for values of the channels: its joints by
+/// their names.
 class Posture {
  public:
   /// `body` must outlive it, and be a StandardPerson or a CMU skeleton.

@@ -149,7 +149,7 @@ Result<void> RunPushSweep(const PushSweep& sweep, std::uint64_t seed, PushSweepR
 /// Writes plots like the paper's Figures 5 to 8 into a folder, which is made where it is missing,
 /// each over the part of the motion that has most of what it shows: vertical COM where the COM
 /// rises and falls most, horizontal COM where it leans furthest, the shoulder's and the elbow's
-/// angles where an arm swings most, and stick figures of the deepest crouch (run/crouch.h),
+/// angles where an arm swings most, and stick figures of the deepest crouch (pose_run.h),
 /// whose title says where there is none. Files of before are overwritten. Returns the names.
 Result<std::vector<std::string>> WriteFigures(const pose_run::PoseRun& run,
                                               const reconstruction::Models& models,

@@ -22,7 +22,7 @@ struct PoseSceneOptions {
   std::string still;              ///< TRC or C3D of the same person standing, of markers.
   std::string forces;             ///< MOT, STO or C3D of the plates under the same trial.
   std::string still_forces = {};  ///< The same of the plates under `still`; may be empty.
-  std::string activities;         ///< CSV of labels (run/activity.h); empty: by rules.
+  std::string activities;         ///< CSV of labels (pose_run.h); empty: by rules.
   bool standard_layout = true;    ///< Fit any other skeleton to the one that the engine runs.
   pose_run::Settings settings;
 };

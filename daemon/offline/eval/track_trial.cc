@@ -197,7 +197,7 @@ constexpr double kKickNs = 2;
 /// People stand before the start line until a trial begins.
 constexpr double kStandsS = 1;
 constexpr int kStepsPerSight = 10;
-/// Time in which people change over from one motion to another (common/virtual/people/rhythm.cc).
+/// Time in which people change over from one motion to another (common/virtual/people/person.cc).
 constexpr double kChangeOverS = 0.4;
 /// A change of the motion is followed at the pace of the slower one.
 constexpr double kPaceS = 2;

@@ -73,7 +73,8 @@ struct BoardLoadSettings {
 /// Loads that two boards under the feet would measure during a motion (common/virtual/devices), at
 /// momentum::kNetworkRateHz. Each board's middle is where its foot mostly is. The origin is half
 /// way between the points of the soles where the COP is at rest, where the feet mostly are; as in
-/// use, when it comes from a T-pose. `motion` is aligned (alignment.h); `body` is of its skeleton.
+/// use, when it comes from a T-pose. `motion` is aligned (time_alignment.h); `body` is of its
+/// skeleton.
 LoadClip BoardLoads(const motion::Motion& motion, const body::Body& body,
                     const BoardLoadSettings& settings, std::uint64_t seed);
 

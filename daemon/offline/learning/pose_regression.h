@@ -134,8 +134,8 @@ struct PoseBasis {
   int ComponentsFor(double fraction) const;
 };
 
-/// Basis of poses in columns: aligned motions (alignment.h) of one skeleton layout. The sign of a
-/// component is such that its greatest entry is positive.
+/// Basis of poses in columns: aligned motions (time_alignment.h) of one skeleton layout. The sign
+/// of a component is such that its greatest entry is positive.
 PoseBasis MakeBasis(const Eigen::MatrixXd& poses, std::vector<std::string> dofs);
 
 /// Appends mean, scale, components and variances, labelled with the dofs.

@@ -93,7 +93,7 @@ struct Frame {
   bool kinect_crouches = false;  ///< In it the legs are lost.
 };
 
-/// Activity of the person in each frame (activity.h).
+/// Activity of the person in each frame.
 struct Activities {
   std::vector<std::string> names;
   std::vector<int> of_frame;  ///< Index of a name, or -1; empty: not given.

@@ -115,7 +115,7 @@ class GyroscopeBias {
   Eigen::Vector3d squares_radps2_ = Eigen::Vector3d::Zero();  // Sum of squared deviations.
 };
 
-/// The MotionPlus' gyroscope, to SI in the Wiimote's sensor frame S (see acceleration.h).
+/// The MotionPlus' gyroscope, to SI in the Wiimote's sensor frame S.
 ///
 ///        front (camera)              c = (raw - zero) / (scale - zero) * degrees, of each axis
 ///            ^ y_S

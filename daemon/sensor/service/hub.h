@@ -83,7 +83,7 @@ class Hub {
   Result<void> RequestDeviceStatus(std::uint32_t device);
   /// The device that had this role gets the one that this device had.
   Result<void> AssignRole(const std::string& serial, const Binding& binding);
-  /// Commands of the set-up (hub_setup.cc). What they change is saved at once and holds from the
+  /// Commands of the set-up. What they change is saved at once and holds from the
   /// end of the next tick on, so that a recording's reports and set-up give the same features
   /// again.
   ///

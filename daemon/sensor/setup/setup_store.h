@@ -70,7 +70,7 @@ using Items = std::map<std::string, std::vector<stream::SetupItem>>;
 using MovedBoards = std::map<std::string, bool>;
 
 /// The set-up of all rigs: roles assigned, tares, mountings, layouts, what was done when, and what
-/// is stale since. Every change is saved at once, one text per part (setup_json.h).
+/// is stale since. Every change is saved at once, one text per part.
 class SetupStore {
  public:
   explicit SetupStore(Storage storage);

@@ -42,7 +42,7 @@ Result<BipedParameters> ParseBiped(const std::string& text, const std::string& o
 
 /// The whole world as MJCF text: options, `ground` (geoms of the world body), the biped.
 /// Contact: the feet's friction holds whatever ground they touch; solref 6 ms, critically damped.
-/// The feet and the geoms of `ground_names` are also listed as pairs (physics/clearance.h).
+/// The feet and the geoms of `ground_names` are also listed as pairs (Clearance in world.h).
 std::string WriteMjcf(const BipedParameters& parameters, const std::string& ground,
                       const std::vector<std::string>& ground_names, double step_s);
 

@@ -21,9 +21,9 @@ inline constexpr double kGroundAtStartM = 1;
 ///   name      text; comment   text, ignored
 ///   width_m   (0, 100], 4 by default
 ///   open      true: a character may leave the ribbon; otherwise that is a failure
-///   extendable  true: segments may be added later (append.h); those of the file are then 1 to 32
+///   extendable  true: segments may be added later; those of the file are then 1 to 32
 ///             of at least 2 m
-///   endless   true: the track continues itself ahead of the character (endless.h); level
+///   endless   true: the track continues itself ahead of the character; level
 ///   help_over_pits  false: the gait controllers do not see pits; a jump's timing is the user's
 ///   start_m, finish_m  lines across the track, m along it: where a trial's clock starts (1 by
 ///             default) and stops (5 m before the end; 0, without a finish, on a track that is open

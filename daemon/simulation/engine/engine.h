@@ -189,7 +189,7 @@ class GaitEngine {
   const stream::Skeleton& skeleton() const;
   const stream::Track& track() const;
 
-  /// Goes over to another track (track_world.h) and gives the former one back in `other`. The
+  /// Goes over to another track (state.h) and gives the former one back in `other`. The
   /// character stands at the start, time and counts go on; a trial begins with the next inputs that
   /// have a new number. Allocates nothing.
   void UseTrack(TrackWorld& other);

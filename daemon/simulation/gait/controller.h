@@ -44,7 +44,7 @@ stream::GaitState Describe(const biped::BodyState& body, const biped::GaitComman
                            const GaitMemory& memory);
 
 /// Running and jumping towards a pit: finds it on the track, measures the hops, and turns the plan
-/// (pit_plan.h) into what the gaits remember.
+/// (pits.h) into what the gaits remember.
 /// At lift-off and touchdown: remembers the pit ahead, if any.
 void LookForPit(const Context& context, GaitMemory& memory);
 
@@ -82,7 +82,7 @@ Eigen::Vector3d LegsMomentum(const biped::BodyState& body, const biped::BipedPar
 /// Angular momentum of the whole body about its COM, kg m2/s, world. In flight it does not change.
 Eigen::Vector3d AngularMomentum(const biped::BodyState& body, const biped::BipedParameters& biped);
 
-/// Walking and stepping at the pit that LookForPit found (pit_sight.h): over a narrow one by its
+/// Walking and stepping at the pit that LookForPit found: over a narrow one by its
 /// footholds; before a wide one they stop.
 /// The coming foothold at a pit, seen from the supporting foot; nothing when it needs no plan.
 /// `natural_m` is the foothold without a pit.

@@ -23,7 +23,7 @@ struct ServoGains {
 
 /// PD servo of the body's attitude, by the hips of the supporting legs. Overdamped: the rate left
 /// at lift-off, not the angle, is what a flight makes worse. Before a flight the rate in roll and
-/// pitch is that of body and legs together (running_targets.cc).
+/// pitch is that of body and legs together (running.cc).
 struct AttitudeGains {
   double roll_stiffness_nm_per_rad = 250;
   double roll_damping_nms_per_rad = 60;
@@ -101,7 +101,7 @@ struct HoppingGains {
 struct CurveGains {
   double idle_bank = 2.5;   ///< It mirrors the other one about half of this times the bank: with a
                             ///< bank_share of 0.8 about the direction of the whole force.
-  double leg_gap_m = 0.07;  ///< Between the legs' axes (leg_room.h).
+  double leg_gap_m = 0.07;  ///< Between the legs' axes (KeepLegsApart in foothold.h).
 };
 
 /// Running and jumping over steps of the ground that are seen.
@@ -140,7 +140,7 @@ struct TransitionGains {
   double jump_landing_damping_ns_per_m = 260;
 };
 
-/// Crossing pits (pit_plan.h).
+/// Crossing pits (pits.h).
 struct PitGains {
   PitLimits limits;
   double jump_lift_off_min_mps = 1.1;

@@ -137,7 +137,7 @@ struct HopMeasures {
   double rise_offset_m = -0.04;  ///< COM's rise until lift-off, less a share of the extension.
 };
 
-/// The pit ahead and the plan of the hops up to it (pit_sight.h).
+/// The pit ahead and the plan of the hops up to it (controller.h).
 struct PitMemory {
   PitSighting sighting;
   HopMeasures last_hop;
@@ -156,7 +156,7 @@ struct EdgeMemory {
   double height_m = 0;                              ///< Height of the higher side.
 };
 
-/// State of running's and jumping's plan by the ground that they see (ground_plan.h).
+/// State of running's and jumping's plan by the ground that they see (transition.h).
 struct GroundMemory {
   double climb_mps = 0;      ///< Added to this lift-off, beyond the gait's own.
   double slope = 0;          ///< Rise over run along the heading, under this support's foot.

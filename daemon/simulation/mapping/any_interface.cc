@@ -127,7 +127,7 @@ using stream::UserInterface;
 
 namespace {
 
-/// The fastest stable jump (daemon/simulation/biped/limits.cc).
+/// The fastest stable jump (daemon/simulation/biped/body_state.cc).
 constexpr double kRunUpMps = 2;
 
 }  // namespace

@@ -14,8 +14,8 @@
 
 /// From the cells under two feet and the places of two hands to the pose of the whole body (Ha, Bai
 /// & Liu 2011, section 6, and what goes beyond it: docs/pose.md). Steps, each a function or a small
-/// class: calibrate and estimate (measurement.h), targets (pose_targets.h), solve (best_solver.h,
-/// pose::FibonacciSearch), clean up (clean_up.h), report (report.h). Modes compose them.
+/// class: calibrate, estimate and targets (pose_targets.h), solve (best_mode.h,
+/// pose::FibonacciSearch), clean up and report (report.h). Modes compose them.
 namespace footing::reconstruction {
 
 /// A person on the cells: calibrates in a T-pose, then reconstructs in best or paper mode. A value

@@ -58,7 +58,7 @@ Result<nlohmann::ordered_json> TableOf(const Meter& meter) {
 }
 
 TEST(BoardRanges, FollowTheTrueRangeOfUsersOfDifferentTempoAndAmplitude) {
-  // The synthetic user at tempo and amplitude 1 (common/virtual/people/board_body.cc).
+  // The synthetic user at tempo and amplitude 1 (common/virtual/people/person.cc).
   constexpr double kSlowHz = 0.55, kFastHz = 2.0;
   constexpr double kStepLean = 2 * 0.05 / 0.336, kStandLean = 1.5 * kStepLean;
   // The largest second derivative of the smoothest way of 7 cm in 0.3 s, over g.

@@ -69,7 +69,7 @@ Result<nlohmann::ordered_json> Table(const Played& played, const Meter& meter) {
                  BuiltIn(played.interface));
 }
 
-/// The synthetic users' slowest and fastest motion at tempo 1 (common/virtual/people/limb_body.cc).
+/// The synthetic users' slowest and fastest motion at tempo 1 (common/virtual/people/person.cc).
 struct True {
   UserInterface interface;
   double slow_hz, fast_hz;

@@ -14,7 +14,7 @@
 namespace footing::eval {
 namespace {
 
-/// The files name no rate; footing-eval assumes the same (see features_command.cc).
+/// The files name no rate; footing-eval assumes the same (see daemon/offline/eval/features.cc).
 constexpr double kRateHz = 50;
 constexpr double kLongestFalseMotionS = 0.3;
 
