@@ -12,7 +12,6 @@
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
 #include "common/runtime/timer.h"
-#include "common/stream/interface_roles.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/roles.h"
 #include "common/virtual/devices/accelerometer.h"

@@ -12,7 +12,6 @@
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/board/geometry.h"
-#include "common/stream/hand_covariance.h"
 #include "common/stream/hands.h"
 
 namespace footing::camera_pose {

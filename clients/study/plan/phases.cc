@@ -8,7 +8,6 @@
 #include <string>
 
 #include "common/base/text.h"
-#include "common/stream/interface_roles.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/roles.h"
 

@@ -7,7 +7,6 @@
 
 #include "clients/view/scene/stage.h"
 #include "clients/view/scene/text.h"
-#include "common/stream/hand_covariance.h"
 #include "common/stream/hands.h"
 
 namespace footing::scene {

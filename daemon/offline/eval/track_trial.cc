@@ -7,7 +7,6 @@
 
 #include "common/base/units.h"
 #include "common/board/layout.h"
-#include "common/stream/interface_roles.h"
 #include "common/stream/roles.h"
 #include "common/virtual/people/driver.h"
 #include "common/virtual/people/person.h"

@@ -9,7 +9,6 @@
 
 #include "common/runtime/clock.h"
 #include "common/runtime/files.h"
-#include "common/wire/fields.h"
 #include "common/wire/model_file.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
