@@ -22,8 +22,8 @@ inline constexpr std::int64_t kOldestPointNs = 1'000'000'000;
 struct ReferenceFrame {
   std::string rig;
   std::int64_t age_ns = 0;
-  std::vector<int> parents;                  ///< Of each joint; -1 for the root.
-  std::vector<Eigen::Vector3d> positions_m;  ///< Of each joint, in W.
+  std::vector<int> parents;                  ///< Parent of each joint; -1 for the root.
+  std::vector<Eigen::Vector3d> positions_m;  ///< Place of each joint, in W.
   Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
   std::int64_t sent_ns = 0;  ///< As a HandFrame's.
 };

@@ -7,7 +7,7 @@
 
 namespace footing::stream {
 
-/// What can turn with the interface leg.
+/// Limbs that can turn with the interface leg.
 inline constexpr std::array kLegTurnSources = {TurnSource::kHead, TurnSource::kFeet,
                                                TurnSource::kTrunk};
 

@@ -65,7 +65,7 @@ class Kind {
 
   /// Fills in the kind's part of the status.
   virtual void AddTo(stream::DeviceStatus& status) const { status.kind = kind(); }
-  /// What is wrong and what to do, for a person; empty when all is well.
+  /// The fault and its remedy, for a person; empty when all is well.
   virtual std::string Note(std::int64_t now_ns) const = 0;
 };
 

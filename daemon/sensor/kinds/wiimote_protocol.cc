@@ -51,7 +51,7 @@ WiimoteProtocol::WiimoteProtocol(const decode::KindOptions& options, const Entry
       sequencer_(options.handshake, *entry.plan, kPlans),
       speaker_(entry.make(options)) {}
 
-/// What answers at the port decides which device it is; a block may have been read too.
+/// Follows the plan: the answer at the port decides which device it is, and blocks may be new.
 void WiimoteProtocol::FollowPlan() {
   if (&sequencer_.plan() != entry_->plan) {
     entry_ = std::find_if(std::begin(kEntries), std::end(kEntries),

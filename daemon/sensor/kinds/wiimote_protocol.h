@@ -12,7 +12,7 @@
 
 namespace footing::kinds {
 
-/// What is special to one of the devices that speak the Wiimote's protocol. It reads the handshake
+/// Special part of one of the devices that speak the Wiimote's protocol. It reads the handshake
 /// that the protocol has carried out. A new one also gets a line in wiimote_protocol.cc.
 class Speaker {
  public:

@@ -153,7 +153,7 @@ class Device {
     links_.Detach(handle, reason);
   }
 
-  /// What one report brought besides what it added to the tick.
+  /// Result of one report, besides what it added to the tick.
   struct Taken {
     std::span<const stream::MotionSample> motion;  ///< Its samples, in the tick.
     bool other_kind = false;                       ///< The device proved to be of another kind.

@@ -20,7 +20,7 @@ void WriteIfAny(const Part& part, v1::AppliedInput& message,
   if (part != Part{}) wire::Write(part, *(message.*mutable_part)());
 }
 
-/// What a person wears, holds and stands on.
+/// Devices that a person wears, holds and stands on.
 void WriteFeatures(const mapping::Inputs& inputs, v1::AppliedInput& message) {
   using Message = v1::AppliedInput;
   wire::Write(inputs.hands.left, *message.mutable_left());

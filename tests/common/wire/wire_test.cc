@@ -86,9 +86,9 @@ void VisitFields(const Message& message, const Visit& visit) {
   }
 }
 
-/// What comes back of a filled message: but for these all of it.
+/// Fields of a filled message that do not come back: all others do.
 void LeaveOut(const Message&) {}
-void LeaveOut(v1::GaitState& message) { message.clear_phase(); }  // Of static storage: out only.
+void LeaveOut(v1::GaitState& message) { message.clear_phase(); }  // Static storage: out only.
 void LeaveOut(v1::BoardInput& message) { message.mutable_corners_n()->Resize(4, 0); }
 void LeaveOut(v1::TrialState& message) {
   const v1::FailureCounts& failures = message.failures();
