@@ -33,7 +33,7 @@ constexpr double kLedEveryS = 0.8;  // Status comes once a second at the slowest
 /// The rumble and the lamps during their phases: a command now and then for every controller.
 class Actuators {
  public:
-  void Drive(Session& session, const std::string& rig, guide::Phase phase, std::int64_t now_ns) {
+  void Drive(Connection& session, const std::string& rig, guide::Phase phase, std::int64_t now_ns) {
     const bool rumble = phase == guide::Phase::kRumble;
     if (!rumble && phase != guide::Phase::kLed) return;
     const double every_s = rumble ? kRumbleEveryS : kLedEveryS;
@@ -58,7 +58,7 @@ class Actuators {
   }
 
   /// The lamps show the roles again.
-  void Restore(Session& session, const std::string& rig) {
+  void Restore(Connection& session, const std::string& rig) {
     for (const auto& device : DevicesOf(session, rig)) {
       v1::Command command;
       command.mutable_set_leds()->set_device(device.device);
@@ -75,7 +75,7 @@ class Actuators {
 /// Everything of one run: the recording, the measurement, and where in the plan it is.
 class Run {
  public:
-  Run(Session& session, const AcceptanceOptions& options, stream::BoardLayout layout,
+  Run(Connection& session, const AcceptanceOptions& options, stream::BoardLayout layout,
       recording::RecordingWriter writer)
       : session_(session),
         options_(options),
@@ -139,7 +139,7 @@ class Run {
     return verdict;
   }
 
-  Session& session_;
+  Connection& session_;
   const AcceptanceOptions& options_;
   stream::BoardLayout layout_;
   recording::RecordingWriter writer_;
@@ -152,7 +152,7 @@ class Run {
 
 }  // namespace
 
-Result<AcceptanceVerdict> RunAcceptance(Session& session, const AcceptanceOptions& options) {
+Result<AcceptanceVerdict> RunAcceptance(Connection& session, const AcceptanceOptions& options) {
   std::size_t boards = 0;
   std::size_t body_devices = 0;
   for (const auto& device : DevicesOf(session, options.rig)) {
@@ -242,7 +242,7 @@ void AddAcceptanceCommand(CLI::App& app, Shared& shared) {
     }
     if (arguments->options.out.empty()) arguments->options.out = "acceptance.mcap";
     // Everything, so that the recording can be run again.
-    WithSession(shared, {}, [&](Session& session) -> Result<void> {
+    WithSession(shared, {}, [&](Connection& session) -> Result<void> {
       const auto verdict = RunAcceptance(session, arguments->options);
       if (!verdict) return verdict.error();
       return Show(*verdict, shared);
@@ -409,7 +409,7 @@ std::string PoseText(const stream::BoardPose& pose) {
          std::to_string(std::lround(RadiansToDegrees(pose.yaw_rad))) + " degrees";
 }
 
-Result<void> Layout(Session& session, const LayoutArguments& arguments, const Shared& shared) {
+Result<void> Layout(Connection& session, const LayoutArguments& arguments, const Shared& shared) {
   stream::BoardLayout layout;
   for (const auto& rig : session.setup()) {
     if (rig.rig == arguments.rig) layout = rig.layout;
@@ -485,7 +485,7 @@ void AddLayoutCommand(CLI::App& app, Shared& shared) {
       return;
     }
     WithSession(shared, GuidedChannels(),
-                [&](Session& session) { return Layout(session, *arguments, shared); });
+                [&](Connection& session) { return Layout(session, *arguments, shared); });
   });
 }
 

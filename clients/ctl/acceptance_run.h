@@ -31,7 +31,7 @@ struct AcceptanceVerdict {
 
 /// Leads through the phases, records everything that footingd sends meanwhile and keeps the verdict
 /// in the recording's metadata "acceptance".
-Result<AcceptanceVerdict> RunAcceptance(Session& session, const AcceptanceOptions& options);
+Result<AcceptanceVerdict> RunAcceptance(Connection& session, const AcceptanceOptions& options);
 
 /// Computes the checks again from a recording that RunAcceptance made. InvalidData when it is none.
 Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path);

@@ -290,7 +290,7 @@ pairing::Host Look(const std::string& root) {
 }
 
 /// Waits until a device of the kind that was not live before is.
-Result<void> WaitForNew(Session& session, pairing::Kind kind, double within_s) {
+Result<void> WaitForNew(Connection& session, pairing::Kind kind, double within_s) {
   const auto live = [&] {
     std::set<std::string> serials;
     for (const stream::DeviceStatus& device : session.status()) {
@@ -334,7 +334,7 @@ void Pair(const std::string& name, bool print, double within_s, const std::strin
   if (shared.json || print) return;
   std::cout << "Waiting until footingd finds it (Ctrl-C to stop) ..." << std::endl;
   WithSession(shared, {"status"},
-              [&](Session& session) { return WaitForNew(session, *kind, within_s); });
+              [&](Connection& session) { return WaitForNew(session, *kind, within_s); });
 }
 
 }  // namespace

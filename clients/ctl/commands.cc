@@ -32,13 +32,13 @@
 
 namespace footing::ctl {
 
-Result<std::unique_ptr<Session>> Open(const Shared& shared, std::vector<std::string> channels) {
-  SessionOptions options;
+Result<std::unique_ptr<Connection>> Open(const Shared& shared, std::vector<std::string> channels) {
+  ConnectionOptions options;
   options.channels = std::move(channels);
   const auto address = transport::AddressOrDefault(shared.connect, "sensor");
   if (!address) return address.error();
   options.address = *address;
-  return Session::Open(std::move(options));
+  return Connection::Open(std::move(options));
 }
 
 void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared) {
@@ -53,7 +53,7 @@ void AddRemark(const v1::CommandResult& result, nlohmann::ordered_json& out, std
 }
 
 void WithSession(Shared& shared, const std::vector<std::string>& channels,
-                 const std::function<Result<void>(Session&)>& body) {
+                 const std::function<Result<void>(Connection&)>& body) {
   const auto session = Open(shared, channels);
   if (!session) {
     shared.exit_code = cli::Report(session.error());
@@ -64,9 +64,9 @@ void WithSession(Shared& shared, const std::vector<std::string>& channels,
   }
 }
 
-Result<std::unique_ptr<Session>> OpenSimulation(const Shared& shared,
-                                                std::vector<std::string> channels,
-                                                const std::string& start_with) {
+Result<std::unique_ptr<Connection>> OpenSimulation(const Shared& shared,
+                                                   std::vector<std::string> channels,
+                                                   const std::string& start_with) {
   Shared simulation = shared;
   if (simulation.connect.empty()) {
     simulation.connect = transport::DefaultAddress("simulation").Text();
@@ -125,7 +125,7 @@ void AddAssignCommand(CLI::App& app, Shared& shared) {
         shared.exit_code = cli::Report(roles.error());
         return;
       }
-      WithSession(shared, GuidedChannels(), [&](Session& session) {
+      WithSession(shared, GuidedChannels(), [&](Connection& session) {
         return AssignByGesture(session, given->rig, *roles, given->script, shared);
       });
       return;
@@ -139,7 +139,7 @@ void AddAssignCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(role.error());
       return;
     }
-    WithSession(shared, {"status"}, [&](Session& session) {
+    WithSession(shared, {"status"}, [&](Connection& session) {
       return Assign(session, given->device, given->rig_role, shared);
     });
   });
@@ -228,7 +228,7 @@ std::optional<std::uint32_t> ParseColour(const std::string& text) {
   return rgb;
 }
 
-Result<void> Rumble(Session& session, const std::string& name, double seconds,
+Result<void> Rumble(Connection& session, const std::string& name, double seconds,
                     const Shared& shared) {
   const auto device = session.Find(name);
   if (!device) return device.error();
@@ -255,7 +255,7 @@ Result<void> CheckLight(const std::string& light) {
   return UsageError(light + " is neither four LEDs such as 1010 nor a colour such as #00ff40");
 }
 
-Result<void> Led(Session& session, const std::string& name, const std::string& light,
+Result<void> Led(Connection& session, const std::string& name, const std::string& light,
                  const Shared& shared) {
   const auto leds = ParseLeds(light);
   const auto colour = ParseColour(light);
@@ -285,7 +285,7 @@ struct Tared {
   std::string text;
 };
 
-Result<Tared> TareOne(Session& session, const DeviceStatus& device, bool clear) {
+Result<Tared> TareOne(Connection& session, const DeviceStatus& device, bool clear) {
   v1::Command command;
   command.mutable_tare()->set_serial(device.serial);
   command.mutable_tare()->set_clear(clear);
@@ -304,7 +304,7 @@ Result<Tared> TareOne(Session& session, const DeviceStatus& device, bool clear) 
 }
 
 /// All that are there. Those that are not tared are named, each with the reason.
-Result<void> TareAll(Session& session, bool clear, const Shared& shared) {
+Result<void> TareAll(Connection& session, bool clear, const Shared& shared) {
   const display::Boards boards = display::BoardsOf(session.status());
   if (boards.there.empty() && boards.lost.empty()) return NoDevice("footingd has no board");
   ordered_json tared = ordered_json::array(), missed = ordered_json::array();
@@ -338,7 +338,7 @@ Result<void> TareAll(Session& session, bool clear, const Shared& shared) {
   return refused ? Failure(all) : NoDevice(all);
 }
 
-Result<void> Tare(Session& session, const std::string& name, bool clear, const Shared& shared) {
+Result<void> Tare(Connection& session, const std::string& name, bool clear, const Shared& shared) {
   if (name == "all") return TareAll(session, clear, shared);
   const auto board = session.Find(name);
   if (!board) return board.error();
@@ -353,7 +353,7 @@ Result<void> Tare(Session& session, const std::string& name, bool clear, const S
 
 }  // namespace
 
-Result<void> Assign(Session& session, const std::string& name, const std::string& rig_role,
+Result<void> Assign(Connection& session, const std::string& name, const std::string& rig_role,
                     const Shared& shared) {
   const auto binding = display::ParseRigRole(rig_role);
   if (!binding) return binding.error();
@@ -412,7 +412,7 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.05, 30.0));
   rumble->footer("Example:\n  footing-ctl rumble left_hand --seconds 2");
   rumble->callback([arguments, &shared] {
-    WithSession(shared, {"status"}, [&](Session& session) {
+    WithSession(shared, {"status"}, [&](Connection& session) {
       return Rumble(session, arguments->device, arguments->seconds, shared);
     });
   });
@@ -429,7 +429,7 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(light.error());
       return;
     }
-    WithSession(shared, {"status"}, [&](Session& session) {
+    WithSession(shared, {"status"}, [&](Connection& session) {
       return Led(session, arguments->device, arguments->light, shared);
     });
   });
@@ -441,8 +441,9 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
   tare->add_flag("--clear", *clear, "Remove the tare");
   tare->footer("Examples:\n  footing-ctl tare all\n  footing-ctl tare left_board --clear");
   tare->callback([arguments, clear, &shared] {
-    WithSession(shared, {"status"},
-                [&](Session& session) { return Tare(session, arguments->device, *clear, shared); });
+    WithSession(shared, {"status"}, [&](Connection& session) {
+      return Tare(session, arguments->device, *clear, shared);
+    });
   });
 }
 
@@ -456,7 +457,7 @@ constexpr double kNoticeS = 5;  // For this time watch shows what slows the serv
 constexpr double kForeverS = 1e6;
 constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
 
-Result<void> Devices(Session& session, const Shared& shared) {
+Result<void> Devices(Connection& session, const Shared& shared) {
   const auto& devices = session.status();
   Print({{"devices", display::DevicesToJson(devices)}}, display::DeviceTable(devices), shared);
   if (devices.empty())
@@ -466,7 +467,7 @@ Result<void> Devices(Session& session, const Shared& shared) {
 }
 
 /// The devices and their setup, or how to get some; other servers than footingd have none.
-std::string DevicesText(const Session& session) {
+std::string DevicesText(const Connection& session) {
   if (session.welcome().server_id() != "footingd") return "";
   const auto& devices = session.status();
   return "\n" +
@@ -475,7 +476,7 @@ std::string DevicesText(const Session& session) {
          "\n" + display::SetupTable(session.setup());
 }
 
-Result<void> Status(Session& session, const Shared& shared) {
+Result<void> Status(Connection& session, const Shared& shared) {
   const v1::Welcome& welcome = session.welcome();
   const v1::Limits& limits = welcome.limits();
   ordered_json devices = ordered_json::array();
@@ -516,7 +517,7 @@ Result<void> Status(Session& session, const Shared& shared) {
   return {};
 }
 
-Result<void> Watch(Session& session, double seconds, const Shared& shared) {
+Result<void> Watch(Connection& session, double seconds, const Shared& shared) {
   display::Live live;
   session.set_on_tick([&](const v1::Tick& tick) {
     for (const auto& sample : tick.motion().samples()) live.Take(wire::FromProto(sample));
@@ -560,7 +561,7 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
   CLI::App* devices = app.add_subcommand("devices", "List the devices of footingd");
   devices->footer("Examples:\n  footing-ctl devices\n  footing-ctl devices --json");
   devices->callback([&shared] {
-    WithSession(shared, {"status"}, [&](Session& session) { return Devices(session, shared); });
+    WithSession(shared, {"status"}, [&](Connection& session) { return Devices(session, shared); });
   });
 
   CLI::App* status = app.add_subcommand(
@@ -568,7 +569,7 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
   status->footer("Example:\n  footing-ctl status --json");
   status->callback([&shared] {
     WithSession(shared, {"status", "setup", "stats"},
-                [&](Session& session) { return Status(session, shared); });
+                [&](Connection& session) { return Status(session, shared); });
   });
 
   const auto seconds = std::make_shared<double>(0);
@@ -578,7 +579,7 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
   watch->footer("Examples:\n  footing-ctl watch\n  footing-ctl watch --seconds 5 --json");
   watch->callback([seconds, &shared] {
     WithSession(shared, {"status", "motion", "nunchuk", "gamepad", "boards", "stats"},
-                [&](Session& session) { return Watch(session, *seconds, shared); });
+                [&](Connection& session) { return Watch(session, *seconds, shared); });
   });
 }
 
@@ -702,7 +703,7 @@ constexpr double kFrameWithinS = 3;
 constexpr double kLeaseS = 1;  // It is released at once.
 
 /// The holder that the newest frame names; empty: nobody.
-Result<std::string> ReadHolder(Session& session) {
+Result<std::string> ReadHolder(Connection& session) {
   std::optional<std::string> holder;
   session.set_on_tick([&](const v1::Tick& tick) {
     if (tick.has_characters()) holder = tick.characters().lease_holder();
@@ -715,7 +716,7 @@ Result<std::string> ReadHolder(Session& session) {
 }
 
 /// Takes the lease from whoever has it, and gives it back, so that anybody may take it.
-Result<void> TakeOver(Session& session) {
+Result<void> TakeOver(Connection& session) {
   v1::Command take;
   take.mutable_take_lease()->set_holder(cli::UserAtHost() + ", footing-ctl");
   take.mutable_take_lease()->set_seconds(kLeaseS);

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "clients/ctl/session.h"
+#include "clients/ctl/connection.h"
 #include "footing/v1/command.pb.h"
 
 namespace footing::ctl {
@@ -21,8 +21,8 @@ struct Shared {
 };
 
 /// A session with the address and defaults of the command line.
-Result<std::unique_ptr<Session>> Open(const Shared& shared,
-                                      std::vector<std::string> channels = {"status", "setup"});
+Result<std::unique_ptr<Connection>> Open(const Shared& shared,
+                                         std::vector<std::string> channels = {"status", "setup"});
 
 /// Prints the object with --json, else the text; always ends the line. Bad UTF-8 is replaced.
 void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared);
@@ -34,19 +34,19 @@ void AddRemark(const v1::CommandResult& result, nlohmann::ordered_json& out, std
 
 /// Runs a command's body with an open session and keeps the exit code of what it returns.
 void WithSession(Shared& shared, const std::vector<std::string>& channels,
-                 const std::function<Result<void>(Session&)>& body);
+                 const std::function<Result<void>(Connection&)>& body);
 
 /// A session with footing-sim: at --connect, else at its default address. NoDevice, with how to
 /// start it, when nothing listens there.
-Result<std::unique_ptr<Session>> OpenSimulation(const Shared& shared,
-                                                std::vector<std::string> channels,
-                                                const std::string& start_with);
+Result<std::unique_ptr<Connection>> OpenSimulation(const Shared& shared,
+                                                   std::vector<std::string> channels,
+                                                   const std::string& start_with);
 /// Sends one command to footing-sim, likewise.
 Result<void> SendToSimulation(const Shared& shared, v1::Command command,
                               const std::string& start_with);
 
 /// Gives a device a role by hand, waits until the devices show it, and prints it.
-Result<void> Assign(Session& session, const std::string& device, const std::string& rig_role,
+Result<void> Assign(Connection& session, const std::string& device, const std::string& rig_role,
                     const Shared& shared);
 
 void AddDeviceCommands(CLI::App& app, Shared& shared);     ///< devices, status, watch

@@ -88,7 +88,7 @@ guide::Answer StoreCamera(const guide::Action& action, const std::string& file) 
   return answer;
 }
 
-guide::Answer Do(Session& session, const guide::Action& action,
+guide::Answer Do(Connection& session, const guide::Action& action,
                  const guide::SetUpOptions& options) {
   if (action.kind == guide::Action::Kind::kStoreCamera)
     return StoreCamera(action, options.camera_file);
@@ -150,7 +150,8 @@ class PromptPrinter {
 /// asked once.
 class PublishedPrompts {
  public:
-  PublishedPrompts(Session& session, std::string rig) : session_(session), rig_(std::move(rig)) {}
+  PublishedPrompts(Connection& session, std::string rig)
+      : session_(session), rig_(std::move(rig)) {}
 
   void Show(guide::Item item, const guide::Progress& progress) {
     if (!taken_ || progress.prompt.empty() || progress.prompt == text_) return;
@@ -171,13 +172,13 @@ class PublishedPrompts {
  private:
   static constexpr std::size_t kMostBytes = 1024;
 
-  Session& session_;
+  Connection& session_;
   const std::string rig_;
   bool taken_ = true;
   std::string text_;
 };
 
-Result<void> Record(Session& session, const std::string& rig, const stream::SetupItem& item) {
+Result<void> Record(Connection& session, const std::string& rig, const stream::SetupItem& item) {
   v1::Command command;
   command.mutable_record_setup()->set_rig(rig);
   *command.mutable_record_setup()->mutable_item() = wire::ToProto(item);
@@ -204,7 +205,7 @@ void TakeTick(const v1::Tick& tick, guide::Recent& recent) {
   for (const auto& sample : tick.hands().samples()) recent.Add(wire::FromProto(sample));
 }
 
-std::vector<stream::DeviceStatus> DevicesOf(const Session& session, const std::string& rig) {
+std::vector<stream::DeviceStatus> DevicesOf(const Connection& session, const std::string& rig) {
   std::vector<stream::DeviceStatus> devices;
   for (const auto& device : session.status()) {
     if (device.rig == rig && device.state != stream::DeviceState::kLost) devices.push_back(device);
@@ -212,7 +213,7 @@ std::vector<stream::DeviceStatus> DevicesOf(const Session& session, const std::s
   return devices;
 }
 
-Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
+Result<std::vector<stream::SetupItem>> RunGuided(Connection& session,
                                                  const guide::SetUpOptions& options,
                                                  const std::vector<guide::Item>& items,
                                                  const PromptOptions& prompts) {
@@ -267,7 +268,7 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
   return found;
 }
 
-std::vector<stream::SetupItem> ItemsOf(const Session& session, const std::string& rig,
+std::vector<stream::SetupItem> ItemsOf(const Connection& session, const std::string& rig,
                                        const std::vector<stream::SetupItem>& results) {
   std::vector<stream::SetupItem> recorded;
   for (const auto& one : session.setup()) {
@@ -308,7 +309,7 @@ std::string ToText(const stream::SetupItem& item) {
   return text;
 }
 
-Result<void> PrintItems(const Session& session, const std::string& rig,
+Result<void> PrintItems(const Connection& session, const std::string& rig,
                         const std::vector<stream::SetupItem>& items, bool need_ready,
                         const Shared& shared) {
   std::vector<std::string> missing;
@@ -346,7 +347,7 @@ Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>
   return roles;
 }
 
-Result<void> AssignByGesture(Session& session, const std::string& rig,
+Result<void> AssignByGesture(Connection& session, const std::string& rig,
                              const std::vector<stream::DeviceRole>& body_roles, bool script,
                              const Shared& shared) {
   guide::SetUpOptions options;
@@ -436,7 +437,7 @@ Result<void> AllDone(const std::vector<guide::Item>& items,
   return {};
 }
 
-Result<void> Setup(Session& session, const SetUpArguments& arguments,
+Result<void> Setup(Connection& session, const SetUpArguments& arguments,
                    const std::vector<guide::Item>& items, const Shared& shared) {
   const auto results =
       RunGuided(session, arguments.options, items, PromptOptions{arguments.script});
@@ -512,7 +513,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       return;
     }
     WithSession(shared, GuidedChannels(),
-                [&](Session& session) { return Setup(session, *arguments, *items, shared); });
+                [&](Connection& session) { return Setup(session, *arguments, *items, shared); });
   });
 }
 

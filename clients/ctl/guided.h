@@ -22,17 +22,17 @@ const std::vector<std::string>& GuidedChannels();
 void TakeTick(const v1::Tick& tick, guide::Recent& recent);
 
 /// Attached devices of a rig.
-std::vector<stream::DeviceStatus> DevicesOf(const Session& session, const std::string& rig);
+std::vector<stream::DeviceStatus> DevicesOf(const Connection& session, const std::string& rig);
 
 /// Runs items of the set-up with footingd and the person, and records each result there. What was
 /// found is returned with its date; Failure when it was interrupted or footingd went away.
-Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
+Result<std::vector<stream::SetupItem>> RunGuided(Connection& session,
                                                  const guide::SetUpOptions& options,
                                                  const std::vector<guide::Item>& items,
                                                  const PromptOptions& prompts);
 
 /// The rig's items as footingd keeps them, with `results` on top.
-std::vector<stream::SetupItem> ItemsOf(const Session& session, const std::string& rig,
+std::vector<stream::SetupItem> ItemsOf(const Connection& session, const std::string& rig,
                                        const std::vector<stream::SetupItem>& results);
 
 /// {name, serial, passed, residual, unit, date, stale, note}
@@ -41,7 +41,7 @@ nlohmann::ordered_json ToJson(const stream::SetupItem& item);
 std::string ToText(const stream::SetupItem& item);
 
 /// Prints {rig, items, ready, missing}; a failure when the set-up is not ready.
-Result<void> PrintItems(const Session& session, const std::string& rig,
+Result<void> PrintItems(const Connection& session, const std::string& rig,
                         const std::vector<stream::SetupItem>& items, bool need_ready,
                         const Shared& shared);
 
@@ -50,7 +50,7 @@ Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>
 
 /// `assign --gesture`: "Step on the left board now.", "Shake the left wrist now." The session needs
 /// GuidedChannels().
-Result<void> AssignByGesture(Session& session, const std::string& rig,
+Result<void> AssignByGesture(Connection& session, const std::string& rig,
                              const std::vector<stream::DeviceRole>& body_roles, bool script,
                              const Shared& shared);
 

@@ -84,9 +84,9 @@ ordered_json ArrayOf(const std::vector<v1::ConnectedSession>& sessions) {
   return array;
 }
 
-Result<std::unique_ptr<Session>> Connect(const SessionsOptions& options, v1::Role role,
-                                         const Shared& shared) {
-  SessionOptions dialled;
+Result<std::unique_ptr<Connection>> Connect(const SessionsOptions& options, v1::Role role,
+                                            const Shared& shared) {
+  ConnectionOptions dialled;
   dialled.channels = {"stats"};
   dialled.role = role;
   const bool simulation = options.of == "footing-sim" && shared.connect.empty();
@@ -95,7 +95,7 @@ Result<std::unique_ptr<Session>> Connect(const SessionsOptions& options, v1::Rol
                            : transport::AddressOrDefault(shared.connect, "sensor");
   if (!address) return address.error();
   dialled.address = *address;
-  return Session::Open(std::move(dialled));
+  return Connection::Open(std::move(dialled));
 }
 
 Result<void> List(const SessionsOptions& options, const Shared& shared) {

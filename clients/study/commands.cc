@@ -228,7 +228,7 @@ struct CheckOptions {
   bool schema = false;
 };
 
-double PlannedS(const plan::Session& session) {
+double PlannedS(const plan::SessionPlan& session) {
   double planned_s = 0;
   for (const plan::Phase& phase : session.phases) planned_s += phase.duration_s;
   return planned_s;
@@ -245,7 +245,7 @@ ordered_json ToJson(const plan::Phase& phase) {
 }
 
 /// One line for each participant: the interfaces in their order, each with its tasks and track.
-std::string Line(const plan::Session& session) {
+std::string Line(const plan::SessionPlan& session) {
   std::string line = "  " + session.participant + ": ";
   for (const std::string& interface : session.interfaces) {
     if (interface != session.interfaces.front()) line += "; ";
@@ -293,7 +293,7 @@ Result<Answer> Check(const CheckOptions& options) {
                 (sessions.size() == 1 ? " participant" : " participants") + ", order " +
                 Name(protocol.order) + ", seed " + std::to_string(protocol.seed) + ", control " +
                 protocol.control + "; data in " + loaded->folder + "\n";
-  for (const plan::Session& session : sessions) {
+  for (const plan::SessionPlan& session : sessions) {
     ordered_json phases = ordered_json::array();
     for (const plan::Phase& phase : session.phases) phases.push_back(ToJson(phase));
     answer.json["sessions"].push_back({{"participant", session.participant},
@@ -650,9 +650,9 @@ struct SimulateOptions {
 };
 
 /// Those that are asked for; all where none is named.
-Result<std::vector<plan::Session>> Chosen(const SimulateOptions& given,
-                                          const plan::Protocol& protocol) {
-  std::vector<plan::Session> sessions = plan::MakeSessions(protocol);
+Result<std::vector<plan::SessionPlan>> Chosen(const SimulateOptions& given,
+                                              const plan::Protocol& protocol) {
+  std::vector<plan::SessionPlan> sessions = plan::MakeSessions(protocol);
   if (given.participants.empty()) return sessions;
   for (const std::string& code : given.participants) {
     const auto& known = protocol.participants;
@@ -660,7 +660,7 @@ Result<std::vector<plan::Session>> Chosen(const SimulateOptions& given,
       return UsageError("participant " + code + " is not in the protocol");
     }
   }
-  std::erase_if(sessions, [&](const plan::Session& session) {
+  std::erase_if(sessions, [&](const plan::SessionPlan& session) {
     const auto& wanted = given.participants;
     return std::find(wanted.begin(), wanted.end(), session.participant) == wanted.end();
   });

@@ -300,7 +300,7 @@ Result<std::optional<SessionTime>> Before(const StudyOptions& options,
 }
 
 /// A session in a folder of its own, which then moves into the study's.
-Result<void> SimulateOne(const StudyOptions& options, const plan::Session& session) {
+Result<void> SimulateOne(const StudyOptions& options, const plan::SessionPlan& session) {
   const std::string draft = options.study_folder + "/.drafts/" + session.participant;
   std::error_code error;
   fs::remove_all(draft, error);
@@ -322,7 +322,7 @@ class Jobs {
     progress_.at_once = options.jobs;
   }
 
-  Result<void> Start(const plan::Session& session) {
+  Result<void> Start(const plan::SessionPlan& session) {
     while (static_cast<int>(running_.size()) >= options_.jobs) WaitForOne();
     const pid_t process = ::fork();
     if (process < 0) return Failure(std::string("fork: ") + std::strerror(errno));
@@ -385,8 +385,8 @@ Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options) {
   const auto kept = journal::KeepProtocol(options.study_folder, options.protocol_text);
   if (!kept) return kept.error();
   std::vector<SessionTime> times;
-  std::vector<const plan::Session*> due;
-  for (const plan::Session& session : options.sessions) {
+  std::vector<const plan::SessionPlan*> due;
+  for (const plan::SessionPlan& session : options.sessions) {
     const auto before = Before(options, session.participant);
     if (!before) return before.error();
     if (*before) {
@@ -396,14 +396,14 @@ Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options) {
     }
   }
   Jobs jobs(options, due.size());
-  for (const plan::Session* session : due) {
+  for (const plan::SessionPlan* session : due) {
     if (const auto done = jobs.Start(*session); !done) return done.error();
   }
   if (const auto failed = jobs.Finish(); !failed.empty()) {
     return Failure(std::to_string(failed.size()) + " of " + std::to_string(due.size()) +
                    " sessions failed; the same command simulates them again");
   }
-  for (const plan::Session* session : due) {
+  for (const plan::SessionPlan* session : due) {
     const auto time = Before(options, session->participant);
     if (!time) return time.error();
     times.push_back({session->participant, (*time)->simulated_s, false});

@@ -19,7 +19,7 @@ namespace footing::study::simulate {
 struct SimulatedSession {
   std::string protocol_path;
   std::string study_folder;  ///< Folder of this session alone; must not exist.
-  plan::Session session;
+  plan::SessionPlan session;
   std::uint64_t seed = 1;        ///< Seed of the participant's style and answers.
   bool real_time = false;        ///< Runs on the host's time, so that latencies are real.
   std::string turn_by = "head";  ///< Turn source of the interface leg: head, feet or trunk.
@@ -79,7 +79,7 @@ struct StudyOptions {
   std::string protocol_path;
   std::string protocol_text;
   std::string study_folder;  ///< Folder of simulated sessions alone.
-  std::vector<plan::Session> sessions;
+  std::vector<plan::SessionPlan> sessions;
   std::uint64_t seed = 1;
   int jobs = 1;                  ///< Sessions at once, each on about one processor.
   bool real_time = false;        ///< As in SimulatedSession.

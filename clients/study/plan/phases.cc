@@ -71,9 +71,9 @@ void AddInterface(const Protocol& protocol, const std::string& participant,
   add(PhaseKind::kSurvey, "survey");
 }
 
-Session MakeSession(const Protocol& protocol, const std::string& participant,
-                    const std::vector<std::size_t>& order) {
-  Session session;
+SessionPlan MakeSession(const Protocol& protocol, const std::string& participant,
+                        const std::vector<std::size_t>& order) {
+  SessionPlan session;
   session.participant = participant;
   Decks decks{Deck(protocol.straight_tasks, Draw(protocol.seed, "tasks " + participant)),
               Deck(protocol.test_tracks, Draw(protocol.seed, "tracks " + participant))};
@@ -117,18 +117,18 @@ const char* Name(PhaseKind kind) {
   return "";
 }
 
-std::size_t Session::trial_count() const {
+std::size_t SessionPlan::trial_count() const {
   return static_cast<std::size_t>(std::count_if(
       phases.begin(), phases.end(), [](const Phase& phase) { return phase.is_trial(); }));
 }
 
-std::vector<Session> MakeSessions(const Protocol& protocol) {
+std::vector<SessionPlan> MakeSessions(const Protocol& protocol) {
   const std::size_t people = protocol.participants.size();
   const std::size_t count = protocol.interfaces.size();
   const Orders orders = protocol.order == Order::kWilliams
                             ? BalancedOrders(count, people, protocol.seed)
                             : RandomOrders(count, people, protocol.seed);
-  std::vector<Session> sessions;
+  std::vector<SessionPlan> sessions;
   for (std::size_t i = 0; i < people; ++i) {
     sessions.push_back(MakeSession(protocol, protocol.participants[i], orders[i]));
   }
@@ -141,7 +141,7 @@ namespace {
 void AddConfounded(const Protocol& protocol, std::vector<std::string>& remarks) {
   if (protocol.participants.size() < 2 || protocol.test_tracks.size() < 2) return;
   std::map<std::string, std::set<std::string>> tracks;  // Tracks of each interface.
-  for (const Session& session : MakeSessions(protocol)) {
+  for (const SessionPlan& session : MakeSessions(protocol)) {
     for (const Phase& phase : session.phases) {
       if (phase.kind == PhaseKind::kTestTrack) tracks[phase.interface].insert(phase.track);
     }

@@ -46,7 +46,7 @@ struct Phase {
 /// Schedule of one participant, from the consent to the final survey (gait paper, section 8.1): for
 /// each interface the demonstration, the measurement of personal ranges where the protocol wants
 /// it, practice, the straight tracks, one test track, the survey.
-struct Session {
+struct SessionPlan {
   std::string participant;
   std::vector<std::string> interfaces;  ///< In their order.
   std::vector<Phase> phases;
@@ -56,7 +56,7 @@ struct Session {
 
 /// The sessions of all participants, in the protocol's order. Straight tasks and test tracks are
 /// drawn without replacement as far as they last.
-std::vector<Session> MakeSessions(const Protocol& protocol);
+std::vector<SessionPlan> MakeSessions(const Protocol& protocol);
 
 /// Remarks on the plan for the experimenter, such as an incomplete square.
 std::vector<std::string> Remarks(const Protocol& protocol);

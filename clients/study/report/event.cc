@@ -255,7 +255,7 @@ std::vector<plan::SurveyItem> Unanswered(const std::vector<plan::SurveyItem>& it
   return left;
 }
 
-std::string Describe(const Progress& progress, const plan::Session& session) {
+std::string Describe(const Progress& progress, const plan::SessionPlan& session) {
   if (progress.withdrawn) return session.participant + " has withdrawn";
   if (progress.finished) return session.participant + " has finished";
   if (!progress.started) return session.participant + " has not begun";

@@ -115,6 +115,6 @@ std::vector<plan::SurveyItem> Unanswered(const std::vector<plan::SurveyItem>& it
                                          const std::vector<Event>& events);
 
 /// The line for a person: "P07 stopped in wrist.test, attempt 2".
-std::string Describe(const Progress& progress, const plan::Session& session);
+std::string Describe(const Progress& progress, const plan::SessionPlan& session);
 
 }  // namespace footing::study::records

@@ -64,8 +64,8 @@ Result<journal::Lock> LockStudy(const SessionOptions& options) {
   return done ? std::move(lock) : Result<journal::Lock>(done.error());
 }
 
-Result<plan::Session> SessionOf(const SessionOptions& options, const plan::Protocol& protocol) {
-  for (plan::Session& session : plan::MakeSessions(protocol)) {
+Result<plan::SessionPlan> SessionOf(const SessionOptions& options, const plan::Protocol& protocol) {
+  for (plan::SessionPlan& session : plan::MakeSessions(protocol)) {
     if (session.participant == options.participant) return std::move(session);
   }
   return UsageError("participant " + options.participant +

@@ -36,7 +36,7 @@ struct SessionOptions {
 struct SessionContext {
   const SessionOptions& options;
   const plan::Protocol& protocol;
-  const plan::Session& session;
+  const plan::SessionPlan& session;
   Console& console;
   journal::Journal& journal;
   SurveyScreen* screen = nullptr;  ///< The participant's, where there is one.

@@ -34,8 +34,8 @@ class Events {
   std::vector<Event> list;
 };
 
-plan::Session TwoTrials() {
-  plan::Session session;
+plan::SessionPlan TwoTrials() {
+  plan::SessionPlan session;
   session.participant = "P7";
   session.interfaces = {"wrist"};
   session.phases = {{"consent", plan::PhaseKind::kConsent, "", "", "", 0, 0},
@@ -45,7 +45,7 @@ plan::Session TwoTrials() {
 }
 
 TEST(Progress, GoesOnWithTheFirstPhaseThatIsNotFinished) {
-  const plan::Session session = TwoTrials();
+  const plan::SessionPlan session = TwoTrials();
   Events events;
   EXPECT_FALSE(Replay(session.phases, events.list).started);
   events.Add(EventKind::kSessionStarted).Add(EventKind::kPhaseFinished, {{"phase", "consent"}});
@@ -64,7 +64,7 @@ TEST(Progress, GoesOnWithTheFirstPhaseThatIsNotFinished) {
 }
 
 TEST(Progress, AnAttemptThatWasInterruptedIsRepeatedAndNamed) {
-  const plan::Session session = TwoTrials();
+  const plan::SessionPlan session = TwoTrials();
   Events events;
   events.Trial("wrist.straight1", 1);
   events.Add(EventKind::kTrialFinished, {{"outcome", kInterrupted}, {"time_s", 3}});
@@ -96,7 +96,7 @@ TEST(Progress, KnowsAfterHowLongInMotionTheLastLongRestWas) {
 }
 
 TEST(Progress, KeepsTheTrialThatEndedBeforeACrash) {
-  const plan::Session session = TwoTrials();
+  const plan::SessionPlan session = TwoTrials();
   Events events;
   events.Add(EventKind::kSessionStarted).Add(EventKind::kPhaseFinished, {{"phase", "consent"}});
   events.Add(EventKind::kPhaseStarted, {{"phase", "wrist.straight1"}, {"interface", "wrist"}});
@@ -122,7 +122,7 @@ TEST(Progress, KeepsTheTrialThatEndedBeforeACrash) {
 }
 
 TEST(Progress, KnowsWithdrawalAndTheEnd) {
-  const plan::Session session = TwoTrials();
+  const plan::SessionPlan session = TwoTrials();
   Events events;
   events.Add(EventKind::kSessionStarted).Add(EventKind::kWithdrawn);
   EXPECT_TRUE(Replay(session.phases, events.list).withdrawn);

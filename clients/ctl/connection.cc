@@ -1,4 +1,4 @@
-#include "clients/ctl/session.h"
+#include "clients/ctl/connection.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -28,9 +28,9 @@ std::string Remedy(const std::string& link) {
 
 }  // namespace
 
-class Session::Implementation {
+class Connection::Implementation {
  public:
-  explicit Implementation(SessionOptions options) : signals_(io_, SIGINT, SIGTERM) {
+  explicit Implementation(ConnectionOptions options) : signals_(io_, SIGINT, SIGTERM) {
     dialled_.address = options.address;
     dialled_.client_name = "footing-ctl";
     dialled_.role = options.role;
@@ -126,44 +126,46 @@ class Session::Implementation {
   bool interrupted_ = false;
 };
 
-Session::Session(std::unique_ptr<Implementation> implementation)
+Connection::Connection(std::unique_ptr<Implementation> implementation)
     : implementation_(std::move(implementation)) {}
-Session::~Session() = default;
+Connection::~Connection() = default;
 
-Result<std::unique_ptr<Session>> Session::Open(SessionOptions options) {
+Result<std::unique_ptr<Connection>> Connection::Open(ConnectionOptions options) {
   const double within_s = options.connect_within_s;
   auto implementation = std::make_unique<Implementation>(std::move(options));
   if (const auto there = implementation->WaitForSnapshot(within_s); !there) return there.error();
-  return std::unique_ptr<Session>(new Session(std::move(implementation)));
+  return std::unique_ptr<Connection>(new Connection(std::move(implementation)));
 }
 
-const std::vector<stream::DeviceStatus>& Session::status() const {
+const std::vector<stream::DeviceStatus>& Connection::status() const {
   return implementation_->status_;
 }
-const std::vector<stream::RigSetup>& Session::setup() const { return implementation_->setup_; }
-const std::optional<stream::ServerStats>& Session::stats() const { return implementation_->stats_; }
-const v1::Welcome& Session::welcome() const { return implementation_->welcome_; }
-std::int64_t Session::server_ns() const { return implementation_->server_ns_; }
-bool Session::live() const { return implementation_->live_; }
-const std::string& Session::link() const { return implementation_->link_; }
-std::string Session::TakeNotice() { return std::exchange(implementation_->notice_, {}); }
-bool Session::interrupted() const { return implementation_->interrupted_; }
+const std::vector<stream::RigSetup>& Connection::setup() const { return implementation_->setup_; }
+const std::optional<stream::ServerStats>& Connection::stats() const {
+  return implementation_->stats_;
+}
+const v1::Welcome& Connection::welcome() const { return implementation_->welcome_; }
+std::int64_t Connection::server_ns() const { return implementation_->server_ns_; }
+bool Connection::live() const { return implementation_->live_; }
+const std::string& Connection::link() const { return implementation_->link_; }
+std::string Connection::TakeNotice() { return std::exchange(implementation_->notice_, {}); }
+bool Connection::interrupted() const { return implementation_->interrupted_; }
 
-void Session::set_on_tick(std::function<void(const v1::Tick&)> on_tick) {
+void Connection::set_on_tick(std::function<void(const v1::Tick&)> on_tick) {
   implementation_->on_tick_ = std::move(on_tick);
 }
 
-Result<v1::CommandResult> Session::Call(v1::Command command, double within_s) {
+Result<v1::CommandResult> Connection::Call(v1::Command command, double within_s) {
   return implementation_->Call(std::move(command), within_s);
 }
 
-Waited Session::RunFor(double duration_s) { return implementation_->RunUntil({}, duration_s); }
+Waited Connection::RunFor(double duration_s) { return implementation_->RunUntil({}, duration_s); }
 
-Waited Session::RunUntil(const std::function<bool()>& condition, double within_s) {
+Waited Connection::RunUntil(const std::function<bool()>& condition, double within_s) {
   return implementation_->RunUntil(condition, within_s);
 }
 
-Result<stream::DeviceStatus> Session::Find(const std::string& name) const {
+Result<stream::DeviceStatus> Connection::Find(const std::string& name) const {
   return display::FindDevice(status(), name);
 }
 

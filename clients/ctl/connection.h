@@ -18,7 +18,7 @@
 namespace footing::ctl {
 
 /// Options of a session with footingd.
-struct SessionOptions {
+struct ConnectionOptions {
   transport::Address address;
   std::vector<std::string> channels = {"status", "setup"};  ///< "motion", "boards", ... as needed.
   double max_hz = 0;                                        ///< 0: every tick.
@@ -31,15 +31,15 @@ using timer::Waited;
 
 /// A connection to footingd as a console program wants it: every call waits, and ticks are handled
 /// while it waits. One thread. While it exists SIGINT and SIGTERM end waits, not the program.
-class Session {
+class Connection {
  public:
   /// Connects with the role of the options; where that is control, over TCP with the role view if
   /// the server does not give control. Takes the first snapshot. NoDevice (exit 3) when footingd is
   /// not there within the time, Failure with its words when it refuses.
-  static Result<std::unique_ptr<Session>> Open(SessionOptions options);
-  ~Session();
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
+  static Result<std::unique_ptr<Connection>> Open(ConnectionOptions options);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
   /// The newest list, in the order of footingd; empty before the first device.
   const std::vector<stream::DeviceStatus>& status() const;
@@ -75,7 +75,7 @@ class Session {
 
  private:
   class Implementation;
-  explicit Session(std::unique_ptr<Implementation> implementation);
+  explicit Connection(std::unique_ptr<Implementation> implementation);
   std::unique_ptr<Implementation> implementation_;
 };
 
