@@ -20,7 +20,10 @@ constexpr double kPlaySpreads = 1.5;
 constexpr double kAdoptEveryS = 5;
 // Evidence of the ways from rest to rest: above which, and most of which, counts. One way never has
 // as much: it may lead back by chance.
-constexpr double kReturnsAbove = 4, kMostReturns = 8;
+constexpr double kReturnsAbove = 3.5, kMostReturns = 8, kFailedReturns = -4;
+// Until its ways are known to fail, loads from rest to rest that have the body elsewhere than the
+// output are contradicted by it: by so many deviations of both, and at least by so much.
+constexpr double kApartSpreads = 2, kApartM = 0.1;
 // Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
 // weight must be known to be given to the others: from a body that kept its T-pose, which they
 // follow better than the unweighed filter does, or from one that moved.
@@ -159,9 +162,10 @@ void VerticalBank::WatchReturns() {
   const std::optional<Return> found = returning_.TakeReturn();
   if (returning_.strayed() || (found && !found->back)) {
     returning_.RestartFrom(Others());
-    returns_ = 0;
+    returns_ = kFailedReturns;
   } else if (found) {
-    returns_ = found->by_loads ? std::clamp(returns_ + found->evidence, 0.0, kMostReturns) : 0;
+    returns_ =
+        found->by_loads ? std::clamp(returns_ + found->evidence, kFailedReturns, kMostReturns) : 0;
   }
   returning_speaks_ = returns_ > kReturnsAbove && returning_.follows_loads();
 }
@@ -238,8 +242,15 @@ void VerticalBank::WatchPlay(bool seen, bool look) {
   }
 }
 
+bool VerticalBank::LoadsContradict() const {
+  if (returning_speaks_ || returns_ < 0 || !returning_.follows_loads()) return false;
+  const VerticalCom::Filter::Scalar loads = returning_.Height(0), output = Others().Height(0);
+  const double apart_m = std::abs(loads.mean - output.mean);
+  return apart_m > kApartM && apart_m > kApartSpreads * std::sqrt(loads.variance + output.variance);
+}
+
 bool VerticalBank::trusted() const {
-  if (SeesPosture() && chosen().contradicted()) return false;
+  if (SeesPosture() && (chosen().contradicted() || LoadsContradict())) return false;
   return chosen().Height(0).variance < kTrustedSpreadM * kTrustedSpreadM;
 }
 

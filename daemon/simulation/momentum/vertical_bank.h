@@ -89,6 +89,9 @@ class VerticalBank {
   /// Whether the loads led back from rest to rest, after a posture was seen.
   void WatchReturns();
   void ForgetReturns();
+  /// The loads alone, from the last rest on, have the body elsewhere than the output, and nothing
+  /// shows which of them is wrong.
+  bool LoadsContradict() const;
   /// What would speak if no way from rest to rest were known.
   const VerticalCom& Others() const { return loose_speaks_ ? loose_ : Tight(); }
   bool SeesPosture() const;

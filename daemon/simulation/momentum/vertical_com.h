@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -57,7 +56,9 @@ struct VerticalInput {
 
 /// What a filter of which postures count only at rest finds when the body rests again.
 struct Return {
-  bool back = false;  ///< As high and as slow as the posture shows, within what both may be off.
+  /// As high and as slow as the posture shows, within what both may be off, or still at a height
+  /// that the posture does not show.
+  bool back = false;
   bool by_loads = false;  ///< Nothing but the loads led there from the last rest.
   double evidence = 0;    ///< Log density of that, less its log density if the cells were wrong.
 };
@@ -161,7 +162,9 @@ class VerticalCom {
   void AnchorToPosture(double height_m);
   /// What a posture shows where it counts only at rest.
   void SeeRest(double height_m);
+  /// Whether the body has come to rest, at the height of the posture or at another.
   void ComeToRest(double height_m);
+  void LookAtRest(double height_m);
   /// Where the last rest was no longer says anything.
   void LeaveRests();
   /// Of the height that a posture shows and of a velocity of zero, with what cells that are wrong
@@ -170,6 +173,8 @@ class VerticalCom {
     double distance2 = 0, log_density = 0;
   };
   Fit FitOfRest(double height_m, double wrong) const;
+  /// Of the velocity alone.
+  Fit FitOfStillness(double wrong) const;
   double PostureMean() const;
   double PostureSpread() const;
   /// Where the body is by a posture that has it that high.
@@ -228,13 +233,13 @@ class VerticalCom {
     double since_look_s = 0;
   } t_pose_;
   double score_ = 0;
-  static constexpr double kAwayS = 4;
+  static constexpr double kAwayS = 6;
   struct {
     bool rests = false;
-    double away_s = 0;                ///< Since the last rest, 0 in it and in the T-pose.
-    double calm_s = 0, slow_s = 0;    ///< For how long loads, and the posture, hardly move.
-    double left_m = 0, lowest_m = 0;  ///< Heights when it left the last rest, and since.
-    double posture_m = std::numeric_limits<double>::infinity();  ///< At the last rest.
+    bool known = true;                   ///< In the rest the height is that of the posture.
+    double away_s = 0;                   ///< Since the last rest, 0 in it and in the T-pose.
+    double calm_s = 0;                   ///< For how long the loads hardly move.
+    double lowest_m = 0, highest_m = 0;  ///< Heights since it left the last rest.
     double since_look_s = 0;
     std::optional<Return> found;
   } rest_;

@@ -8,12 +8,17 @@ namespace footing::momentum {
 namespace {
 
 // A body is calm that has nearly no acceleration, by the loads less what is known of them, and a
-// COP that hardly moves. It rests when it is calm for `kCalmS` and back by the filter. If it is not
-// back by the filter, it rests when it is calm for longer: with the posture of the last rest, to
-// `kSamePostureM`, or with any posture that hardly moves.
+// COP that hardly moves. It rests when it is calm for `kCalmS` and, by the filter, still and as
+// high as the posture shows; or when its loads are steady for `kRestSteadyS` and it is still by the
+// filter, at any height that legs allow: hands that stay where they are do not show a squat. Its
+// loads are steady for `kSureS` where it is not still by the filter: then the filter may be wrong.
 constexpr double kCalmMps2 = 0.5, kCalmCopMps = 0.15, kCalmS = 0.15;
-constexpr double kSamePostureM = 0.02, kSameCalmS = 0.3;
-constexpr double kSlowPostureMps = 0.05, kSureCalmS = 0.5;
+constexpr double kRestSteadyS = 0.3, kSureS = 1, kLowestRestM = -0.6;
+// Squared Mahalanobis distances: of a velocity from zero at which the body is still, and at which
+// it has left a rest of unknown height.
+constexpr double kStillDistance2 = 4, kMovesDistance2 = 9;
+// Evidence below which a way has not led to a rest.
+constexpr double kFailed = -1;
 // The error of the height of a posture that stands: mean and standard deviation of what is the same
 // at every rest, and standard deviation of the rest. Two people left out of the model stand 1 to 2
 // cm too low in the mean.
@@ -76,30 +81,32 @@ VerticalCom::Fit VerticalCom::FitOfRest(double height_m, double wrong) const {
   return {distance2, -0.5 * (distance2 + std::log(det))};
 }
 
+VerticalCom::Fit VerticalCom::FitOfStillness(double wrong) const {
+  const Filter::Scalar v = filter_.Of(Filter::Row::Unit(1));
+  const double variance = v.variance + kRestMps * kRestMps + wrong * wrong;
+  const double distance2 = v.mean * v.mean / variance;
+  return {distance2, -0.5 * (distance2 + std::log(variance))};
+}
+
 void VerticalCom::SeeRest(double height_m) {
   const bool calm = std::abs(acceleration_mps2_) < kCalmMps2 && cop_.speed_mps < kCalmCopMps;
   rest_.calm_s = calm ? rest_.calm_s + step_s_ : 0;
-  rest_.slow_s = std::abs(posture_.speed_mps) < kSlowPostureMps ? rest_.slow_s + step_s_ : 0;
-  bool rests = calm;
-  if (!rest_.rests) {
-    const bool back = FitOfRest(height_m, 0).distance2 < kBackDistance2;
-    const bool same = std::abs(height_m - rest_.posture_m) < kSamePostureM;
-    rests = rest_.calm_s >= (back   ? kCalmS
-                             : same ? kSameCalmS
-                                    : kSureCalmS) &&
-            (back || same || rest_.slow_s >= kSureCalmS);
-  }
-  if (rests) {
+  const bool rested = rest_.rests;
+  if (!rested) {
     ComeToRest(height_m);
+  } else {
+    // Of a rest of unknown height nothing but the velocity shows the end.
+    rest_.rests = calm && (rest_.known || FitOfStillness(0).distance2 < kMovesDistance2);
+  }
+  if (rest_.rests) {
+    LookAtRest(height_m);
     return;
   }
   const Filter::Scalar now = filter_.Of(Filter::Row::Unit(0));
-  if (rest_.rests) {
-    rest_.rests = false;
-    rest_.left_m = rest_.lowest_m = now.mean;
-  }
+  if (rested) rest_.lowest_m = rest_.highest_m = now.mean;
   rest_.away_s += step_s_;
   rest_.lowest_m = std::min(rest_.lowest_m, now.mean);
+  rest_.highest_m = std::max(rest_.highest_m, now.mean);
   const double sure_m = kTooHighSpreads * std::sqrt(now.variance);
   if (Loaded(last_.raw_mps2) && now.mean - sure_m > std::max(height_m, 0.0) + kTiptoeM) {
     rest_.found = Return{};
@@ -107,23 +114,33 @@ void VerticalCom::SeeRest(double height_m) {
 }
 
 void VerticalCom::ComeToRest(double height_m) {
-  if (!rest_.rests) {
-    const Fit fit = FitOfRest(height_m, 0);
-    const double wrong = kWrongShare * (rest_.left_m - rest_.lowest_m);
-    rest_.found = Return{fit.distance2 < kBackDistance2, follows_loads(),
-                         fit.log_density - FitOfRest(height_m, wrong).log_density};
-    rest_.rests = rest_.found->back;
-    rest_.since_look_s = kRestLookS;
-    if (!rest_.rests) return;
-  }
+  const double steady_s = std::min(steady_.since_s, rest_.calm_s), z_m = filter_.x()(0);
+  const bool back = rest_.calm_s >= kCalmS && FitOfRest(height_m, 0).distance2 < kBackDistance2;
+  const bool still = steady_s >= kRestSteadyS && FitOfStillness(0).distance2 < kStillDistance2 &&
+                     z_m > kLowestRestM && z_m < std::max(height_m, 0.0) + kTiptoeM;
+  if (!back && !still && steady_s < kSureS) return;
+  const double wrong = kWrongShare * (rest_.highest_m - rest_.lowest_m);
+  const double evidence =
+      back ? FitOfRest(height_m, 0).log_density - FitOfRest(height_m, wrong).log_density
+           : FitOfStillness(0).log_density - FitOfStillness(wrong).log_density;
+  rest_.rests = back || still;
+  if (!rest_.rests && evidence > kFailed) return;
+  rest_.found = Return{rest_.rests, follows_loads(), evidence};
+  rest_.known = back;
+  rest_.since_look_s = kRestLookS;
+}
+
+void VerticalCom::LookAtRest(double height_m) {
   rest_.away_s = 0;
-  rest_.posture_m = height_m;
+  rest_.known = rest_.known || FitOfRest(height_m, 0).distance2 < kBackDistance2;
   rest_.since_look_s += step_s_;
   if (rest_.since_look_s < kRestLookS) return;
   rest_.since_look_s = 0;
+  if (!rest_.known && FitOfStillness(0).distance2 > kStillDistance2) return;
+  filter_.Update(Filter::Row::Unit(1), 0, kRestMps * kRestMps);
+  if (!rest_.known) return;
   Filter::Row h = Filter::Row::Unit(0);
   h(kPosture) = 1;
-  filter_.Update(Filter::Row::Unit(1), 0, kRestMps * kRestMps);
   filter_.Update(h, height_m, kStandsWhiteM * kStandsWhiteM);
 }
 
