@@ -234,10 +234,10 @@ void BestEstimator::ReportCom(bool sees_posture) {
   const auto lagged = vertical_.Height(lag_steps_);
   estimate_.p_WC_m.z() = subject_.com_height_m + std::clamp(lagged.mean, -2.0, 2.0);
   estimate_.position_variance_m2.z() = std::min(lagged.variance, kMostVarianceM2);
-  const auto velocity = vertical_.chosen().Velocity();
+  const auto velocity = vertical_.output().Velocity();
   estimate_.v_WC_mps.z() = velocity.mean;
   estimate_.velocity_variance_m2ps2.z() = std::min(velocity.variance, kMostVarianceM2ps2);
-  estimate_.a_WC_mps2.z() = vertical_.chosen().acceleration_mps2();
+  estimate_.a_WC_mps2.z() = vertical_.output().acceleration_mps2();
 }
 
 void BestEstimator::AdvanceAngular() {

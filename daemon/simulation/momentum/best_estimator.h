@@ -9,10 +9,10 @@
 #include "daemon/simulation/momentum/estimate.h"
 #include "daemon/simulation/momentum/foot_contact.h"
 #include "daemon/simulation/momentum/foot_place.h"
+#include "daemon/simulation/momentum/height_hypotheses.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
 #include "daemon/simulation/momentum/load_share.h"
 #include "daemon/simulation/momentum/step_watch.h"
-#include "daemon/simulation/momentum/vertical_bank.h"
 
 namespace footing::momentum {
 
@@ -54,7 +54,7 @@ class BestEstimator {
   /// again. What is not finite, or comes in a gap, is passed over.
   const Estimate& SeePosture(double lateral_W_m, const Eigen::Vector3d& likely_W_m);
   const Estimate& estimate() const { return estimate_; }
-  const VerticalBank& vertical() const { return vertical_; }
+  const HeightHypotheses& vertical() const { return vertical_; }
   /// Weighed in the T-pose, and again where what came after contradicts that.
   double mass_kg() const { return vertical_.mass_kg(); }
 
@@ -79,7 +79,7 @@ class BestEstimator {
   int lag_steps_;
   std::array<HorizontalCom, 2> horizontal_;
   std::array<HorizontalCom, 2> travelling_;
-  VerticalBank vertical_;
+  HeightHypotheses vertical_;
   std::array<FootContact, kFeet> contacts_;
   std::array<FootPlace, kFeet> places_;
   std::array<Pressure, kFeet> pressures_{};

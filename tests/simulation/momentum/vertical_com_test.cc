@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "daemon/simulation/momentum/best_estimator.h"
-#include "daemon/simulation/momentum/vertical_bank.h"
+#include "daemon/simulation/momentum/height_hypotheses.h"
 #include "tests/simulation/momentum/made_body.h"
 
 namespace footing::momentum {
@@ -18,7 +18,8 @@ double GreatestHeight(double share, double posture_m) {
   MadeBody body;
   body.noise_n = 0.5;
   const TPose pose = body.Calibrate();
-  VerticalConfig config = TrustingVertical(0.028, pose.cell_noise_n);
+  VerticalConfig config =
+      HeightHypothesis(HeightRow::kAccurate, 0.028, pose.cell_noise_n, pose.mass_kg);
   config.posture = LearnedHeightPosture();
   VerticalCom filter(config, pose.mass_kg, kMadeStepS);
   filter.Start(pose.mean_loads);
@@ -40,7 +41,7 @@ TEST(VerticalCom, LoadsThatTellTooMuchDoNotLiftABodyOffItsLegs) {
   }
 }
 
-TEST(VerticalBank, APostureThatStaysShowsThatTheTPoseWeighedWrong) {
+TEST(HeightHypotheses, APostureThatStaysShowsThatTheTPoseWeighedWrong) {
   for (const double share : {0.95, 1.05}) {
     MadeBody body;
     body.noise_n = 0.5;
@@ -48,7 +49,8 @@ TEST(VerticalBank, APostureThatStaysShowsThatTheTPoseWeighedWrong) {
       return Eigen::Vector3d(0, t > 0 ? 0.03 * std::sin(4.4 * t) : 0, kMadeHeightM);
     };
     const TPose pose = body.Calibrate();
-    VerticalBank bank(pose.mass_kg, kMadeStepS, 0.028, pose.cell_noise_n, LearnedHeightPosture());
+    HeightHypotheses bank(pose.mass_kg, kMadeStepS, 0.028, pose.cell_noise_n,
+                          LearnedHeightPosture());
     bank.Start(pose.mean_loads);
     double worst_m = 0;
     for (int i = 0; i < 4 * 60; ++i) {
@@ -78,7 +80,7 @@ double LaterSquatsError(double share, double extra) {
                            kMadeHeightM - 0.3 * down);
   };
   const TPose pose = body.Calibrate();
-  VerticalBank bank(pose.mass_kg, kMadeStepS, 0.028, pose.cell_noise_n, LearnedHeightPosture());
+  HeightHypotheses bank(pose.mass_kg, kMadeStepS, 0.028, pose.cell_noise_n, LearnedHeightPosture());
   bank.Start(pose.mean_loads);
   double square_m2 = 0;
   constexpr int kFrom = 12 * 60, kFrames = 24 * 60;
@@ -93,13 +95,13 @@ double LaterSquatsError(double share, double extra) {
   return std::sqrt(square_m2 / (kFrames - kFrom));
 }
 
-TEST(VerticalBank, SquatsThatEndWhereTheyBeganShowThatTheLoadsAreRight) {
+TEST(HeightHypotheses, SquatsThatEndWhereTheyBeganShowThatTheLoadsAreRight) {
   // By filters that correct a squat by a posture that does not show it, 0.16.
   EXPECT_LT(LaterSquatsError(1, 0), 0.02);
   EXPECT_LT(LaterSquatsError(1.002, 0), 0.02);
 }
 
-TEST(VerticalBank, SquatsThatEndElsewhereByTheLoadsLeaveTheHeightToThePosture) {
+TEST(HeightHypotheses, SquatsThatEndElsewhereByTheLoadsLeaveTheHeightToThePosture) {
   // 0.3 m/s^2 for a second: by the loads alone half a metre at the end of each.
   for (const double extra : {-0.03, 0.03}) EXPECT_LT(LaterSquatsError(1, extra), 0.25) << extra;
 }
