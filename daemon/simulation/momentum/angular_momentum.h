@@ -1,12 +1,51 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 
+#include <Eigen/Core>
+
 #include "daemon/simulation/momentum/contact_loads.h"
-#include "daemon/simulation/momentum/paper_vertical.h"
 
 namespace footing::momentum {
+
+/// When the paper's rule takes velocity or momentum away: the rate has been near zero for a while.
+struct DecayRule {
+  bool enabled = true;      ///< Off: the ablation that shows what one outlier does.
+  double near_zero = 0.35;  ///< Limit of the rate's size: m/s² or N m.
+  double after_s = 0.05;    ///< "a short period of time" (section 4.1).
+  double keep_per_frame = 0.9;
+};
+
+/// Height of the centre of mass by equation (2): double integration of the filtered load with the
+/// velocity's decay (section 4.1). F_y of equation (2) is the net force: the weight is taken off.
+/// A plain value.
+class PaperVertical {
+ public:
+  PaperVertical(const DecayRule& rule, const LoadFilter::Config& filter, double mass_kg,
+                double height_m)
+      : rule_(rule), load_(filter), mass_kg_(mass_kg), height_m_(height_m) {}
+
+  void Advance(double total_load_n, double step_s);
+
+  double height_m() const { return height_m_; }
+  double velocity_mps() const { return velocity_mps_; }
+  double acceleration_mps2() const { return acceleration_mps2_; }
+  /// What the load's variance alone makes of the integrals; the mass's error is not in it.
+  double height_variance_m2() const { return variance_m2_; }
+  double velocity_variance_m2ps2() const { return velocity_variance_; }
+
+ private:
+  DecayRule rule_;
+  LoadFilter load_;
+  double mass_kg_;
+  double height_m_;
+  double velocity_mps_ = 0;
+  double acceleration_mps2_ = 0;
+  double near_zero_s_ = 0;
+  double variance_m2_ = 0;
+  double covariance_ = 0;
+  double velocity_variance_ = 0;
+};
 
 /// Rate of the angular momentum about C by equation (3): sum over the feet of (p - c) x F. The
 /// vertical force is measured; the horizontal force is m c'' shared by the loads, since nothing

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base/units.h"
-#include "daemon/simulation/momentum/horizontal_doubt.h"
+#include "daemon/simulation/momentum/horizontal_com.h"
 
 namespace footing::momentum {
 namespace {

@@ -6,13 +6,11 @@
 
 #include "daemon/simulation/momentum/angular_momentum.h"
 #include "daemon/simulation/momentum/calibration.h"
+#include "daemon/simulation/momentum/contact_loads.h"
 #include "daemon/simulation/momentum/estimate.h"
-#include "daemon/simulation/momentum/foot_contact.h"
 #include "daemon/simulation/momentum/foot_place.h"
 #include "daemon/simulation/momentum/height_hypotheses.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
-#include "daemon/simulation/momentum/load_share.h"
-#include "daemon/simulation/momentum/step_watch.h"
 
 namespace footing::momentum {
 

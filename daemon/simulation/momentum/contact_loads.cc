@@ -68,4 +68,55 @@ bool IsFinite(const ContactLoads& loads) {
   return true;
 }
 
+bool FootContact::Advance(double total_n, double step_s) {
+  const double load = total_n - tare_n_;
+  const bool now = contact_ ? load > config_.off_n : load > config_.on_n;
+  since_s_ = now == contact_ ? since_s_ + step_s : 0;
+  contact_ = now;
+  if (!contact_) {
+    const double share = std::min(1.0, step_s / config_.tare_time_s);
+    tare_n_ = std::clamp(tare_n_ + share * load, -config_.most_tare_n, config_.most_tare_n);
+  }
+  return contact_;
+}
+
+namespace {
+
+// A foot of 26 cm on a plate of 32 cm cannot stand further away from where it stood.
+constexpr double kStepM = 0.2;
+constexpr double kStoodS = 3;  // Of the mean: the filters need as long to find the body again.
+
+}  // namespace
+
+void StepWatch::Start(const std::array<double, kFeet>& forward_m) {
+  mean_m_ = forward_m;
+  stepped_ = false;
+}
+
+void StepWatch::Advance(const std::array<double, kFeet>& forward_m, double step_s) {
+  const double part = 1 - std::exp(-step_s / kStoodS);
+  double most_m = 0;
+  for (std::size_t f = 0; f < kFeet; ++f) {
+    mean_m_[f] += part * (forward_m[f] - mean_m_[f]);
+    most_m = std::max(most_m, std::abs(forward_m[f] - mean_m_[f]));
+  }
+  stepped_ = most_m > kStepM;
+}
+
+namespace {
+
+constexpr double kTimeS = 0.5;  // Of each of two smoothings.
+constexpr double kMostShare = 5;
+constexpr double kLeast = 0.75, kMost = 1.4;            // Beyond it is not the whole weight,
+constexpr double kLeastAgain = 0.87, kMostAgain = 1.2;  // within it is again.
+
+}  // namespace
+
+void LoadShare::Advance(double share, double step_s) {
+  const double part = step_s / (kTimeS + step_s);
+  early_ += part * (std::clamp(share, 0.0, kMostShare) - early_);
+  share_ += part * (early_ - share_);
+  whole_ = whole_ ? share_ > kLeast && share_ < kMost : share_ > kLeastAgain && share_ < kMostAgain;
+}
+
 }  // namespace footing::momentum

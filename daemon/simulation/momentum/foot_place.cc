@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/simulation/momentum/mixture.h"
+#include "daemon/simulation/momentum/linear_filter.h"
 
 namespace footing::momentum {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "daemon/simulation/momentum/estimate.h"
 #include "daemon/simulation/momentum/linear_filter.h"
-#include "daemon/simulation/momentum/mixture.h"
 
 namespace footing::momentum {
 

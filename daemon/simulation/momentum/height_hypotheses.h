@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 
-#include "daemon/simulation/momentum/cell_play.h"
 #include "daemon/simulation/momentum/vertical_com.h"
 
 namespace footing::momentum {

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstddef>
+
+#include <Eigen/Core>
 
 namespace footing::momentum {
 
@@ -133,6 +134,47 @@ class LinearFilter {
   std::size_t count_ = 0;
   std::size_t kept_ = kSlots;
   std::array<Slot, kSlots> slots_{};
+};
+
+/// Mean and variance of a scalar.
+struct Moments {
+  double mean = 0;
+  double variance = 1;
+};
+
+/// A share of a mixture of normal densities.
+struct Component {
+  double share = 1;
+  double mean = 0;
+  double spread = 1;  ///< Standard deviation.
+};
+
+struct MixtureMoments {
+  Moments moments;
+  double log_evidence = 0;  ///< Log of the product's integral.
+};
+
+/// The first two moments of a normal density times a mixture of two, normalised. Finite for every
+/// finite input with positive variances: far from both components the nearer one takes all.
+MixtureMoments TimesMixture(const Moments& prior, const std::array<Component, 2>& mixture);
+
+/// The first two moments of a normal density cut off above `limit`. Far above it the mass gathers
+/// at the limit.
+Moments Below(const Moments& prior, double limit);
+
+/// How a posture that hands and feet alone make likely is wrong about the centre of mass, along one
+/// axis: it shows `share` of the way, beside an error that is a first-order process and a white
+/// one. A filter has the former as a state, so that no number of looks makes it smaller.
+struct PostureError {
+  double share = 1;
+  double spread_m = 0;  ///< Of the slow error; 0: postures are not asked.
+  double time_s = 1;    ///< Its correlation time.
+  double white_m = 0.01;
+  /// Share of looks in which it is right to `right_m`; in the others, as in squats, to `spread_m`.
+  /// It then is the anchor of the height, in place of what upright bodies have, and no state. 0: it
+  /// is a first-order process.
+  double right_share = 0;
+  double right_m = 0.03;
 };
 
 }  // namespace footing::momentum

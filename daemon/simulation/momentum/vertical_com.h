@@ -1,13 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "daemon/simulation/momentum/linear_filter.h"
-#include "daemon/simulation/momentum/mixture.h"
-#include "daemon/simulation/momentum/posture.h"
 
 namespace footing::momentum {
 
@@ -250,5 +249,29 @@ std::vector<VerticalCom::Filter::Scalar> SmoothVertical(const VerticalConfig& co
                                                         double mass_kg, double step_s,
                                                         const VerticalInput& mean,
                                                         const std::vector<VerticalInput>& inputs);
+
+/// At which end of its play each group of cells is, by its readings alone. A cell with a play of
+/// half width h reads h too little while its load grows and h too much while it falls, and does not
+/// move between the two (the play operator: Krasnosel'skii & Pokrovskii 1989). A reading that moves
+/// by more than its noise is at an end; where the load is within the play of one that rests is not
+/// shown, so that the middle is taken within a tenth of a second. A plain value.
+class CellPlay {
+ public:
+  explicit CellPlay(double cell_noise_n) : noise_n_(cell_noise_n) {}
+
+  /// The sum over the groups of the shares of h, -1 to 1, that they read too little, `step_s` after
+  /// the sample before. 0 at first.
+  double Advance(const std::array<double, VerticalInput::kGroups>& load_n, double step_s);
+
+ private:
+  struct Group {
+    double reading_n = 0;  ///< Without the noise: follows once the reading is beyond it.
+    double end = 0;        ///< 1: it reads h too little.
+  };
+
+  double noise_n_;
+  bool started_ = false;
+  std::array<Group, VerticalInput::kGroups> groups_{};
+};
 
 }  // namespace footing::momentum

@@ -9,7 +9,7 @@
 #include "common/base/result.h"
 #include "common/body/body.h"
 #include "daemon/simulation/momentum/calibration.h"
-#include "daemon/simulation/momentum/foot_contact.h"
+#include "daemon/simulation/momentum/contact_loads.h"
 #include "daemon/simulation/reconstruction/models.h"
 #include "daemon/simulation/reconstruction/pose_targets.h"
 #include "daemon/simulation/reconstruction/report.h"

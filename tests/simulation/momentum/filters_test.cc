@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "common/virtual/devices/noise.h"
-#include "daemon/simulation/momentum/foot_contact.h"
+#include "daemon/simulation/momentum/contact_loads.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
 #include "daemon/simulation/momentum/linear_filter.h"
-#include "daemon/simulation/momentum/mixture.h"
 #include "tests/simulation/momentum/made_body.h"
 
 namespace footing::momentum {

@@ -1,4 +1,4 @@
-#include "daemon/simulation/momentum/mixture.h"
+#include "daemon/simulation/momentum/linear_filter.h"
 
 #include <algorithm>
 #include <cmath>
