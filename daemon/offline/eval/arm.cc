@@ -174,7 +174,7 @@ ordered_json RunArmTrial(const pose_run::ArmRun& run, const std::optional<arms::
 
 namespace {
 
-double RootMeanSquare(const std::vector<double>& values, std::size_t from, std::size_t to) {
+double RmsOfRange(const std::vector<double>& values, std::size_t from, std::size_t to) {
   double squares = 0;
   for (std::size_t i = from; i < to; ++i) squares += values[i] * values[i];
   return to > from ? std::sqrt(squares / static_cast<double>(to - from)) : 0;
@@ -197,7 +197,7 @@ nlohmann::ordered_json ArmScore::Json() const {
           {"hand_position_rms_cm", hand_.rms()},
           {"hand_position_p95_cm", hand_.Quantile(0.95)},
           {"hand_position_rms_halves_cm",
-           {RootMeanSquare(cm_, 0, half), RootMeanSquare(cm_, half, cm_.size())}}};
+           {RmsOfRange(cm_, 0, half), RmsOfRange(cm_, half, cm_.size())}}};
 }
 
 void TurnScore::Add(const Eigen::Matrix3d& estimate, const Eigen::Matrix3d& truth) {

@@ -466,7 +466,7 @@ constexpr double kPhaseRad = 20 * kPi / 180;
 using Right = std::function<bool(const stream::RigFeatures&)>;
 
 /// Time from `change_s` until the features are right and stay so; infinite if they never do.
-double Delay(const std::vector<Tick>& ticks, double change_s, const Right& right) {
+double DelayOf(const std::vector<Tick>& ticks, double change_s, const Right& right) {
   double since_s = INFINITY;
   for (const Tick& tick : ticks) {
     if (tick.t_s < change_s) continue;
@@ -533,7 +533,7 @@ std::vector<Sample> RunTrials(int trials, std::uint64_t seed, const DrawChange& 
     const wrists::HandMotion motion({change.before, change.after}, shape, 0,
                                     random.Uniform(0, 2 * kPi));
     const auto ticks = Run(Record(motion, {}, seed + static_cast<std::uint64_t>(i)));
-    samples.push_back({Delay(ticks, change.before.duration_s, change.right), change.slower_hz});
+    samples.push_back({DelayOf(ticks, change.before.duration_s, change.right), change.slower_hz});
   }
   return samples;
 }

@@ -236,7 +236,7 @@ users::Observation See(const engine::EngineOutput& output) {
           .trial = output.trial};
 }
 
-bool Has(const engine::EngineOutput& output, engine::EventKind kind) {
+bool HasEvent(const engine::EngineOutput& output, engine::EventKind kind) {
   return std::any_of(output.events.begin(), output.events.begin() + output.event_count,
                      [kind](const auto& event) { return event.kind == kind; });
 }
@@ -359,8 +359,8 @@ class TrackTrial {
     engine_.Advance(inputs_);
     const engine::EngineOutput& output = engine_.Output();
     if (output.append.added) driver_.SeeTrack(engine_.track());  // It grows.
-    const bool put_back = Has(output, engine::EventKind::kPutBack);
-    fallen_ = (fallen_ || Has(output, engine::EventKind::kFall)) && !put_back;
+    const bool put_back = HasEvent(output, engine::EventKind::kPutBack);
+    fallen_ = (fallen_ || HasEvent(output, engine::EventKind::kFall)) && !put_back;
     if (fallen_) return;
     result_.heading_error.Add(
         WrapAngle(YawOf(output.links[0].orientation) - output.gait.heading_rad));

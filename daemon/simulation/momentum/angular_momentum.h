@@ -30,7 +30,8 @@ class PaperVertical {
   double height_m() const { return height_m_; }
   double velocity_mps() const { return velocity_mps_; }
   double acceleration_mps2() const { return acceleration_mps2_; }
-  /// What the load's variance alone makes of the integrals; the mass's error is not in it.
+  /// Variances of height (m²) and velocity (m²/s²) by the load's variance alone; the mass's error
+  /// is not in them.
   double height_variance_m2() const { return variance_m2_; }
   double velocity_variance_m2ps2() const { return velocity_variance_; }
 

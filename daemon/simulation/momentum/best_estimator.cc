@@ -10,11 +10,11 @@ namespace footing::momentum {
 namespace {
 
 constexpr double kLeastCopN = 20;
-constexpr double kFootCopShare = 0.04;  // Of the weight, for a foot's own COP.
+constexpr double kFootCopShare = 0.04;  // Least load for a foot's own COP, over the weight.
 constexpr double kAwayS = 1.0;          // Longer than any jump.
-constexpr double kAwayShare = 0.3;      // Of the weight: nobody stands on the cells.
-constexpr double kAloftShare = 0.05;    // Nobody touches them.
-constexpr double kFlightS = 0.12;       // Shorter than any jump.
+constexpr double kAwayShare = 0.3;    // Load over the weight; below it nobody stands on the cells.
+constexpr double kAloftShare = 0.05;  // Load over the weight; below it nobody touches them.
+constexpr double kFlightS = 0.12;     // Shorter than any jump.
 // More than this is unknown.
 constexpr double kMostVarianceM2 = 1.0, kMostVarianceM2ps2 = 4.0;
 // How far the COM of bodies that step is from where the filters place it, forwards and sideways.
@@ -185,7 +185,7 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
   const Eigen::Vector2d centre = Centre();
   for (int i = 0; i < 2; ++i) {
     HorizontalInput input;
-    // Of a body that stands on something else, too, they are a part of the COP.
+    // The cells' COP is only a part of that of a body that stands on something else, too.
     input.cop_valid = !gap && both.cop_valid && estimate_.whole_weight;
     input.cop_m = both.p_WP_m(i);
     // Without a measurement the prior alone goes on: no flight is meant.

@@ -8,7 +8,7 @@ namespace footing::momentum {
 namespace {
 
 constexpr double kLeastCopLoadN = 20;
-constexpr double kWeightBand = 0.04;  // Of the mean: breathing and sway stay far below.
+constexpr double kWeightBand = 0.04;  // Share of the mean load: breathing and sway stay far below.
 constexpr double kCopBandM = 0.04;
 constexpr double kSettledS = 0.5;  // After it the mean is good enough to compare with.
 constexpr std::size_t kGroupsPerFoot = VerticalInput::kGroups / kFeet;

@@ -9,12 +9,12 @@
 
 namespace footing::momentum {
 
-/// What a T-pose on the cells shows (section 6): weight, and where each foot stands.
+/// Result of a T-pose on the cells (section 6): weight, and where each foot stands.
 struct TPose {
   double mass_kg = 0;
   std::array<double, kFeet> load_n{};
   std::array<Eigen::Vector3d, kFeet> p_WP_m{};      ///< Mean centre of pressure of each foot.
-  Eigen::Vector3d cop_m = Eigen::Vector3d::Zero();  ///< Of both feet: the COM stands over it.
+  Eigen::Vector3d cop_m = Eigen::Vector3d::Zero();  ///< COP of both feet, W: under the COM.
   VerticalInput mean_loads;
   double cell_noise_n = 0;  ///< Standard deviation of one cell from frame to frame.
 };

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kBoardCells = 4;
 constexpr double kEdgeLoadN = 50;    // With less the COP is too coarse.
-constexpr double kEdgeShare = 0.03;  // Of a foot's load on the cells of the other side.
+constexpr double kEdgeShare = 0.03;  // Most load on the cells of the other side, over the foot's.
 constexpr double kCellNoiseN = 3;
 
 struct Sum {
@@ -84,7 +84,8 @@ namespace {
 
 // A foot of 26 cm on a plate of 32 cm cannot stand further away from where it stood.
 constexpr double kStepM = 0.2;
-constexpr double kStoodS = 3;  // Of the mean: the filters need as long to find the body again.
+// Time constant of the mean: the filters need as long to find the body again.
+constexpr double kStoodS = 3;
 
 }  // namespace
 
@@ -105,7 +106,7 @@ void StepWatch::Advance(const std::array<double, kFeet>& forward_m, double step_
 
 namespace {
 
-constexpr double kTimeS = 0.5;  // Of each of two smoothings.
+constexpr double kTimeS = 0.5;  // Time constant of each of two smoothings.
 constexpr double kMostShare = 5;
 constexpr double kLeast = 0.75, kMost = 1.4;            // Beyond it is not the whole weight,
 constexpr double kLeastAgain = 0.87, kMostAgain = 1.2;  // within it is again.

@@ -19,8 +19,8 @@ struct Cell {
   double load_n = 0;  ///< Vertical force of the foot on the cell, downwards positive.
 };
 
-/// What is under one foot: a board of four cells, an insole of more. `valid` is false when the
-/// source says nothing at this time (a lost link), which is not the same as no load.
+/// Cells under one foot: four of a board, more of an insole. `valid` is false when the source says
+/// nothing at this time (a lost link), which is not the same as no load.
 struct FootLoads {
   bool valid = false;
   std::size_t count = 0;
@@ -40,10 +40,10 @@ struct Pressure {
   Eigen::Vector3d p_WP_m = Eigen::Vector3d::Zero();
 };
 
-/// Of one foot; the centre of pressure counts from `least_n` (> 0) on. An invalid source and cells
+/// Pressure of one foot; its centre counts from `least_n` (> 0) on. An invalid source and cells
 /// that are not finite give 0 and no centre.
 Pressure PressureOf(const FootLoads& foot, double least_n);
-/// Of both feet together.
+/// Pressure of both feet together.
 Pressure PressureOf(const ContactLoads& loads, double least_n);
 
 /// Whether the COP has reached the edge of a board, by its cells in the order of board::Corners:
@@ -119,7 +119,7 @@ class LoadFilter {
  public:
   struct Config {
     double walk_n = 60;   ///< Standard deviation of the change from frame to frame.
-    double noise_n = 15;  ///< Of the measurement.
+    double noise_n = 15;  ///< Standard deviation of the measurement.
   };
 
   LoadFilter() = default;

@@ -12,14 +12,14 @@ namespace footing::momentum {
 struct FootShape {
   double length_m = 0.26;
   double width_m = 0.10;
-  double yaw_rad = 0;  ///< Of the toes from W's x axis, to the left positive.
+  double yaw_rad = 0;  ///< Angle of the toes from W's x axis, to the left positive.
   /// Where the centre of pressure of a standing body is, from the heel as a share of the length.
   double rest_share = 0.42;
 };
 
 /// Who stands on the cells.
 struct Subject {
-  double com_height_m = 1.0;  ///< Of the centre of mass over the ground, in the T-pose.
+  double com_height_m = 1.0;  ///< Height of the centre of mass over the ground, in the T-pose.
   /// How much lower it is when the body stands upright with its arms hanging: what the heights'
   /// anchor means by upright. 0 where the calibration was made so instead of in a T-pose.
   double arms_hang_m = 0.028;
@@ -36,7 +36,7 @@ struct FootEstimate {
   Eigen::Vector3d p_WF_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_WHeel_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_WToe_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();  ///< Of p_WF.
+  Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();  ///< Variance of p_WF, W.
   double airborne_s = 0;                                  ///< Since the foot left the cells.
   double at_edge_s = 0;  ///< Since its COP came to the edge of the cells: it may be further out.
 };
@@ -58,7 +58,7 @@ struct Estimate {
   /// A foot has just stepped ahead or back (StepWatch): the horizontal position lags behind by more
   /// than filters of bodies in place know, and its variance says so. Best mode.
   bool stepped = false;
-  double load_share = 1;  ///< Of the T-pose's weight, in the mean of the last seconds.
+  double load_share = 1;  ///< Mean load of the last seconds over the T-pose's weight.
   Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d a_WC_mps2 = Eigen::Vector3d::Zero();

@@ -15,7 +15,7 @@ struct FootPlaceConfig {
   double ahead_m = 0.025;  ///< People who move press so much further ahead than those who stand.
   double wander_time_s = 0.8;    ///< Correlation time.
   double slip_mps = 0.004;       ///< Growth of the place's deviation in contact, per root second.
-  double loosen_mps = 0.001;     ///< What the outline forbids is forgotten so fast.
+  double loosen_mps = 0.001;     ///< Speed at which the bounds by the outline widen.
   double step_spread_m = 0.05;   ///< A new place against the old one.
   double lift_growth_mps = 0.2;  ///< Growth of the deviation in the air.
   double cop_noise_n_m = 1.5;    ///< Noise of the COP times the load.

@@ -18,7 +18,7 @@ struct Row {
   double slow_force_n,
       slow_s;  ///< Slow error of the boards, and its correlation time.
   double gain_spread,
-      play_n;         ///< Of each group of cells; half the width of their play.
+      play_n;  ///< Standard deviations: gain of each group of cells; half the width of their play.
   double mass_share;  ///< Error of the T-pose's mass; 0: what its noise makes.
   double weight_spread,
       walk;  ///< Common error of the cells at first, and a root second.
@@ -43,8 +43,8 @@ constexpr std::array<Row, kHeightRows> kTable{{
 
 constexpr const Row& RowOf(HeightRow row) { return kTable[static_cast<std::size_t>(row)]; }
 
-// Of the height of an upright body: raised arms, bent knees. It stays while the
-// posture does, so no number of looks makes it smaller.
+// Standard deviation of the height of an upright body: raised arms, bent knees.
+// It stays while the posture does, so no number of looks makes it smaller.
 constexpr double kPostureSpreadM = 0.02;
 constexpr double kLeastCellNoiseN = 0.1;
 // Log odds against another row below which a state is given up for that of the
@@ -77,7 +77,7 @@ constexpr double kReseedMps = 0.5;
 // Where a body is when its feet come down from a flight.
 constexpr double kLandingHeightM = -0.03, kLandingSpreadM = 0.06;
 constexpr double kTrustedSpreadM = 0.12;
-constexpr double kSureSpreads = 4;  // Of what both know of it.
+constexpr double kSureSpreads = 4;  // Sure difference of two estimates, over the deviation of both.
 
 /// Stillness and upright bodies as filters of such cells see them, fitted to
 /// recorded motion.

@@ -20,7 +20,7 @@ enum class HeightRow : std::size_t {
 };
 inline constexpr std::size_t kHeightRows = 6;
 
-/// What the row assumes. `arms_hang_m` is Subject's, `cell_noise_n` and
+/// Assumptions of the row. `arms_hang_m` is Subject's, `cell_noise_n` and
 /// `mass_kg` are the T-pose's.
 VerticalConfig HeightHypothesis(HeightRow row, double arms_hang_m, double cell_noise_n,
                                 double mass_kg);

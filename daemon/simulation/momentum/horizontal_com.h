@@ -9,7 +9,7 @@
 
 namespace footing::momentum {
 
-/// What the horizontal motion of a body is like before anything is measured, for one axis. c is the
+/// Prior of the horizontal motion of a body, before anything is measured, for one axis. c is the
 /// sum of a slow part and a rhythmic part, both stationary, each the output of a third-order linear
 /// system driven by white noise, so that its acceleration is a state:
 ///   c''' + (p + 2 zeta w) c'' + (2 zeta w p + w^2) c' + p w^2 c = noise.

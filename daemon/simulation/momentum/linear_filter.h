@@ -167,7 +167,7 @@ Moments Below(const Moments& prior, double limit);
 /// one. A filter has the former as a state, so that no number of looks makes it smaller.
 struct PostureError {
   double share = 1;
-  double spread_m = 0;  ///< Of the slow error; 0: postures are not asked.
+  double spread_m = 0;  ///< Standard deviation of the slow error; 0: postures are not asked.
   double time_s = 1;    ///< Its correlation time.
   double white_m = 0.01;
   /// Share of looks in which it is right to `right_m`; in the others, as in squats, to `spread_m`.

@@ -79,7 +79,7 @@ class PaperEstimator {
   AngularMomentum angular_;
   std::array<PaperFoot, kFeet> feet_;
   std::array<LoadFilter, kFeet> loads_;
-  std::array<Eigen::Vector2d, 3> com_m_{};  // Of this frame and the two before.
+  std::array<Eigen::Vector2d, 3> com_m_{};  // Horizontal COM of this frame and the two before, W.
   int frames_ = 0;
   Estimate estimate_;
 };

@@ -14,19 +14,18 @@ namespace {
 using VerticalFilter = VerticalCom::Filter;
 
 constexpr int kGroups = VerticalInput::kGroups;
-constexpr int kGains = VerticalCom::kGains, kPlay = VerticalCom::kPlay;
-constexpr int kCells = kGroups + 1;          // What is learned of them: gains, and the play.
+constexpr int kCells = kGroups + 1;  // States of the cells that are learned: gains, and the play.
 constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
-// Of the acceleration that is kept. One that is further off than `kLeap` limits of stillness has
-// another level, which is found at once where a posture is seen: it shows who moves.
+// Time constants of the acceleration that is kept. One that is further off than `kLeap` limits of
+// stillness has another level, which is found at once where a posture is seen: it shows who moves.
 constexpr double kLevelTimeS = 0.5, kLeapTimeS = 0.05, kLeap = 1.2;
 constexpr double kCopTimeS = 0.1;     // Smoothing of the COP, and again of its speed.
 constexpr double kStillLookS = 0.1;   // Time between zero-velocity measurements.
-constexpr double kLoadedShare = 0.5;  // Of the weight: with less, the body may fly.
+constexpr double kLoadedShare = 0.5;  // Load over the weight: with less, the body may fly.
 constexpr double kScoreTimeS = 30;
 constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
-constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
-constexpr double kLeastShare = 0.5;       // Of a weight that is taken for the true one.
+constexpr double kCoastMps2 = 20;  // Noise of the acceleration that nobody watches, per root frame.
+constexpr double kLeastShare = 0.5;  // Least assumed mass over the weighed one.
 // A body that moves slowly and evenly looks still, too: in this share of looks it is, else it has
 // this speed.
 constexpr double kStillShare = 0.6, kSlowMps = 0.04;
@@ -35,7 +34,8 @@ constexpr double kStillPostureMps = 0.02;
 // A filter has strayed that is sure, by so many deviations, of a height over tiptoe with raised
 // arms or under the ground.
 constexpr double kStraySpreads = 4, kHighestM = 0.15, kLowestM = -0.75;
-constexpr double kReseedGain = 0.03;  // Of the weight: what a filter that strayed may have learned.
+// Error of the weight, as a share, that a filter that strayed may have learned.
+constexpr double kReseedGain = 0.03;
 constexpr double kStartHeightM = 0.005;
 constexpr double kStartVelocityMps = 0.005;
 
@@ -277,14 +277,14 @@ void VerticalCom::Coast() {
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }
 
-// What a filter learns of the weight from a body that keeps its T-pose, or stands still.
+// Weight as a filter learns it from a body that keeps its T-pose, or stands still.
 namespace {
 
 // Loads are steady that keep, smoothed, within a limit of their mean. A person who stood still on
 // laboratory plates (OpenCap subject 4, static1, 5 s) had a scatter of 0.011 m/s2 about means of
 // 0.3 s, which differed from each other by 0.002.
 constexpr double kNearS = 0.05, kSteadyMps2 = 0.06, kSteadyS = 0.3;
-// What a mean of steady loads is worth.
+// Standard deviation of a mean of steady loads, as an acceleration.
 constexpr double kLevelSpreadMps2 = 0.01;
 // More of the weight than this is not wrong but elsewhere: a foot stands beside the boards.
 constexpr double kMostWrong = 0.15;
@@ -375,7 +375,7 @@ void VerticalCom::LearnLevel(const Filter::Row& row, double level_mps2, double l
   filter_.Update(row, level_mps2, sd_mps2 * sd_mps2);
 }
 
-// What the filter of the height makes of postures.
+// Use of postures by the filter of the height.
 namespace {
 
 constexpr double kPostureLookS = 0.3;
@@ -388,8 +388,8 @@ constexpr double kFarSpreads = 4, kFarS = 0.2, kDoubtSpreads = 3;
 // so closely are not independent, hence more.
 constexpr double kPostureSpeedS = 0.3, kSpeedLookS = 0.25, kSpeedSettlesS = 3 * kPostureSpeedS;
 constexpr double kLandingS = 0.8;  // Until a body that has landed stands again, or leaps.
-// Of landings so many are on straight legs; in the others the knees give way by up to 40 cm, of
-// which a posture shows little.
+// Share of landings on straight legs; in the others the knees give way by up to 40 cm, of which a
+// posture shows little.
 constexpr double kStiffLandings = 0.5, kGivesWayM = 0.2, kGivesWaySpreadM = 0.12;
 constexpr double kSpeedRight = 0.8, kSpeedMps = 0.04, kSpeedShare = 0.7, kWrongSpeedMps = 0.25;
 
@@ -483,8 +483,8 @@ void VerticalCom::AnchorToPosture(double height_m) {
   Compare(height_m - now.mean, now.variance + posture.spread_m * posture.spread_m, step_s_,
           posture_);
   if (config_.by_rests && follows_loads()) return;
-  // What is less certain than a posture at its worst is not waited for; but looks at a landing
-  // that follow each other are all wrong by the same.
+  // A height that is less certain than a posture at its worst is corrected before a look is due;
+  // but looks at a landing that follow each other are all wrong by the same.
   const bool lands = posture_.landing_s > 0;
   const bool lost = !lands && now.variance > posture.spread_m * posture.spread_m;
   const bool due = posture_.since_score_s >= kPostureAnchorLookS;
@@ -590,7 +590,7 @@ void VerticalCom::SeeRest(double height_m) {
   if (!rested) {
     ComeToRest(height_m);
   } else {
-    // Of a rest of unknown height nothing but the velocity shows the end.
+    // The end of a rest of unknown height is shown by nothing but the velocity.
     rest_.rests = calm && (rest_.known || FitOfStillness(0).distance2 < kMovesDistance2);
   }
   if (rest_.rests) {

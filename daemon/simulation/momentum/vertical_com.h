@@ -10,16 +10,16 @@
 
 namespace footing::momentum {
 
-/// What is assumed of a body's height, of its stillness and of the load cells.
+/// Assumptions about a body's height, its stillness and the load cells.
 struct VerticalConfig {
   // The cells.
   double cell_noise_n = 0.5;     ///< White, of each cell and frame.
   double gain_spread = 0.005;    ///< Standard deviation of a cell group's gain.
   double slow_force_n = 1.0;     ///< Standard deviation of the boards' slow error.
   double slow_force_time_s = 5;  ///< Its correlation time.
-  double play_n = 0;             ///< Of half the width of the cells' play, of all alike.
-  double mass_error_kg = 0.05;   ///< Of the calibration.
-  /// Of what all cells are wrong by alike, beside their own gains.
+  double play_n = 0;             ///< Standard deviation of half the width of all cells' play.
+  double mass_error_kg = 0.05;   ///< Standard deviation of the calibration's mass.
+  /// Standard deviation of the gain error that all cells share, beside their own gains.
   struct {
     double spread = 0;  ///< At first, as a share of the weight.
     double walk = 0;    ///< By which it wanders, per root second.
@@ -38,7 +38,7 @@ struct VerticalConfig {
   double low_below_m = 0.12;  ///< Mean and spread of all other heights.
   double low_spread_m = 0.15;
   double highest_m = 0.12;  ///< Over the T-pose, with load on the feet: tiptoe, arms up.
-  PostureError posture;     ///< Of what hands and feet alone say.
+  PostureError posture;     ///< Error of the height by hands and feet alone.
   /// Postures count only where the body rests, with an error that stays the same; for a few seconds
   /// from one rest to the next the loads alone are integrated.
   bool by_rests = false;
@@ -53,7 +53,7 @@ struct VerticalInput {
   Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
 };
 
-/// What a filter of which postures count only at rest finds when the body rests again.
+/// Finding of a filter with VerticalConfig::by_rests when the body rests again.
 struct Return {
   /// As high and as slow as the posture shows, within what both may be off, or still at a height
   /// that the posture does not show.
@@ -113,8 +113,8 @@ class VerticalCom {
   /// With config.still_at_any_weight: the body is still in its T-pose, with loads that are steady.
   bool holds_t_pose() const;
   bool still() const { return still_.for_s >= kStillAfterS; }
-  /// What the cells measure too much beside the mass, as a part of the weight, with the T-pose's
-  /// loads.
+  /// Load that the cells measure too much beside the mass, as a part of the weight, with the
+  /// T-pose's loads.
   Filter::Scalar Overweight() const { return filter_.Of(overweight_); }
   /// Half the width of the cells' play, N.
   Filter::Scalar Play() const;
@@ -129,7 +129,7 @@ class VerticalCom {
   /// Takes over the state and the mass of another filter, with its doubts; its own configuration
   /// stays.
   void Adopt(const VerticalCom& other);
-  /// What is known of the cells' play is no longer taken to be surer than at first.
+  /// The width of the cells' play is no longer taken to be surer than at first.
   void DoubtPlay();
   /// Nothing was measured in this step.
   void Coast();
@@ -152,27 +152,28 @@ class VerticalCom {
   /// Nobody stands still at two loads. Where a body that hands and feet show to be still, too,
   /// should be accelerating by what its filter has learned, what it weighs has changed since.
   void LookAtLevel(const VerticalInput& input);
-  /// What the cells measure too much, as the acceleration that they show of a body that has none.
+  /// Row of the load that the cells measure too much, as the acceleration (m/s²) that they show of
+  /// a body that has none.
   Filter::Row LevelRow(const VerticalInput& input) const;
   /// It is `level_mps2`, to within a deviation, and `left_mps2` more than the filter knew.
   void LearnLevel(const Filter::Row& row, double level_mps2, double left_mps2, double sd_mps2);
   void LookAtVelocity();
   void Anchor();
   void AnchorToPosture(double height_m);
-  /// What a posture shows where it counts only at rest.
+  /// Takes the height by a posture, over that in the T-pose, where postures count only at rest.
   void SeeRest(double height_m);
   /// Whether the body has come to rest, at the height of the posture or at another.
   void ComeToRest(double height_m);
   void LookAtRest(double height_m);
   /// Where the last rest was no longer says anything.
   void LeaveRests();
-  /// Of the height that a posture shows and of a velocity of zero, with what cells that are wrong
-  /// may add to both (m, m/s).
+  /// Fit of the state to the height that a posture shows and to a velocity of zero; `wrong`: error
+  /// that wrong cells may add to both (m, m/s).
   struct Fit {
     double distance2 = 0, log_density = 0;
   };
   Fit FitOfRest(double height_m, double wrong) const;
-  /// Of the velocity alone.
+  /// Fit of the state to a velocity of zero alone.
   Fit FitOfStillness(double wrong) const;
   double PostureMean() const;
   double PostureSpread() const;
@@ -201,7 +202,7 @@ class VerticalCom {
     double raw_mps2 = 0;
   } last_;
   double acceleration_mps2_ = 0;
-  double level_mps2_ = 0;  // What the loads show, slowly smoothed.
+  double level_mps2_ = 0;  // Acceleration that the loads show, slowly smoothed.
   struct {
     Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();  ///< Smoothed, and so its speed.
     double speed_mps = 0;
@@ -223,7 +224,8 @@ class VerticalCom {
     bool contradicted = false;
   } posture_;
   struct {
-    double near_mps2 = 0, mean_mps2 = 0;  ///< What loads show that hardly change: now, and so far.
+    /// Acceleration by loads that hardly change: now, and the mean so far.
+    double near_mps2 = 0, mean_mps2 = 0;
     double since_s = 0;
   } steady_;
   struct {
