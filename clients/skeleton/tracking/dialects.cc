@@ -206,14 +206,14 @@ constexpr std::size_t kNamed = 6;                // Bones named in the message.
 
 /// Parents before their children; -1: the root. Without a `link` nothing that hangs on it is known;
 /// bones of the trunk may be left out.
-struct Bone {
+struct VmcBone {
   std::string_view name;
   int parent;
   std::optional<Joint> joint;
   bool link = false;
 };
 
-constexpr Bone kChain[] = {
+constexpr VmcBone kChain[] = {
     {"Hips", -1, std::nullopt, true},
     {"Spine", 0, std::nullopt},
     {"Chest", 1, Joint::kTorso},
@@ -291,7 +291,7 @@ VmcStep VmcPose::TakeBone(std::span<const osc::Argument> arguments, std::string_
   step.bone = std::get<std::string_view>(arguments[0]);
   Arrived(step.bone);
   const auto found = std::find_if(std::begin(kChain), std::end(kChain),
-                                  [&step](const Bone& one) { return one.name == step.bone; });
+                                  [&step](const VmcBone& one) { return one.name == step.bone; });
   if (found == std::end(kChain)) {
     if (!IsBeside(step.bone)) step.taken = VmcStep::Taken::kName;
     return step;
