@@ -18,7 +18,7 @@ namespace footing::transport {
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
-inline constexpr char kToken[] = "0123456789abcdef";
+inline constexpr char kFixtureToken[] = "0123456789abcdef";
 inline constexpr std::size_t kTls = 2;  // The listener behind those of ServerFixture.
 
 inline Address TlsAddress(std::uint16_t port = 0) {
@@ -34,7 +34,7 @@ class TlsFixture : public ServerFixture {
  protected:
   TlsFixture() {
     setenv("FOOTING_KNOWN_SERVERS", config_.Path("known_servers").c_str(), 1);
-    options_.token = kToken;
+    options_.token = kFixtureToken;
     options_.identity_file = config_.Path("identity.pem");
   }
   ~TlsFixture() override { unsetenv("FOOTING_KNOWN_SERVERS"); }
@@ -50,7 +50,7 @@ class TlsFixture : public ServerFixture {
   }
 
   /// A real client; its state and its words are kept.
-  void StartClient(const Address& address, const std::string& token = kToken) {
+  void StartClient(const Address& address, const std::string& token = kFixtureToken) {
     ClientOptions options;
     options.address = address;
     options.client_name = "test";

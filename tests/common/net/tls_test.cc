@@ -215,7 +215,7 @@ TEST_F(TlsTest, AReaderThatStallsGetsGapsAndWholeFrames) {
   auto client = Connect(kTls);
   client->Read();
   v1::Envelope hello = Hello();
-  hello.mutable_hello()->set_token(kToken);
+  hello.mutable_hello()->set_token(kFixtureToken);
   client->Send(hello);
   client->Send(Subscribe(v1::QUEUE_POLICY_DROP_OLDEST, 4));
   ASSERT_TRUE(WaitFor(*client, v1::Envelope::kTick));

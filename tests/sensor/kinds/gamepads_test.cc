@@ -98,8 +98,8 @@ TEST(Gamepads, AClassicInAWiimoteIsPublishedAloneAndBehindAMotionPlus) {
     Wiimote wiimote(3);
     if (motion_plus) wiimote.Plug(Accessory::kMotionPlus, 0);
     wiimote.Plug(Accessory::kClassic, 0);
-    Kind kind({}, {0x057e, 0x0306, wiimote.identity().name}, {});
-    const auto newest = Talk(kind, wiimote, [](Wiimote& device, std::int64_t now_ns) {
+    const auto kind = kinds::MakeKind({}, {0x057e, 0x0306, wiimote.identity().name}, {});
+    const auto newest = Talk(*kind, wiimote, [](Wiimote& device, std::int64_t now_ns) {
       WiimoteSensors sensors;
       sensors.classic.left_x = 1;
       sensors.classic.right_y = -1;
@@ -113,7 +113,7 @@ TEST(Gamepads, AClassicInAWiimoteIsPublishedAloneAndBehindAMotionPlus) {
     EXPECT_EQ(newest->right_y, -1);
     EXPECT_EQ(newest->left_trigger, 1);
     EXPECT_EQ(newest->buttons, stream::kGamepadUp | stream::kGamepadHome);
-    EXPECT_EQ(kind.kind(), stream::DeviceKind::kWiimote);
+    EXPECT_EQ(kind->kind(), stream::DeviceKind::kWiimote);
   }
 }
 
@@ -121,8 +121,8 @@ TEST(Gamepads, AProControllerIsKnownByItsNameOrByItsIdentity) {
   for (const char* name : {"Nintendo RVL-CNT-01-UC", ""}) {
     ProController device(4);
     EXPECT_EQ(device.identity().product, 0x0330u);
-    Kind kind({}, {0x057e, 0x0330, name}, {});
-    const auto newest = Talk(kind, device, [](ProController& one, std::int64_t) {
+    const auto kind = kinds::MakeKind({}, {0x057e, 0x0330, name}, {});
+    const auto newest = Talk(*kind, device, [](ProController& one, std::int64_t) {
       ProControllerSensors sensors;
       sensors.gamepad.left_y = 1;
       sensors.gamepad.right_x = -0.5;
@@ -137,12 +137,12 @@ TEST(Gamepads, AProControllerIsKnownByItsNameOrByItsIdentity) {
     EXPECT_EQ(newest->right_x, -0.5);
     EXPECT_EQ(newest->left_trigger, 1);
     EXPECT_EQ(newest->buttons, stream::kGamepadL | stream::kGamepadX | stream::kGamepadRightStick);
-    EXPECT_EQ(kind.kind(), stream::DeviceKind::kProController);
-    EXPECT_TRUE(kind.live());
+    EXPECT_EQ(kind->kind(), stream::DeviceKind::kProController);
+    EXPECT_TRUE(kind->live());
     stream::DeviceStatus status;
-    kind.AddTo(status);
+    kind->AddTo(status);
     EXPECT_EQ(status.battery_fraction, 1);
-    EXPECT_EQ(kind.Note(600 * kStepNs), "");
+    EXPECT_EQ(kind->Note(600 * kStepNs), "");
   }
 }
 
