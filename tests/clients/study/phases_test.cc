@@ -23,7 +23,7 @@ Protocol Four() {
 }
 
 TEST(Sessions, FollowThePapersSequence) {
-  for (const Session& session : MakeSessions(Four())) {
+  for (const SessionPlan& session : MakeSessions(Four())) {
     std::vector<std::string> ids;
     for (const Phase& phase : session.phases) ids.push_back(phase.id);
     std::vector<std::string> expected = {"consent", "device_check"};
@@ -75,7 +75,7 @@ TEST(SurveyItems, AtTheEndAskOnceOfTheWholeStudyWhereTheProtocolSaysSo) {
 
 TEST(Sessions, HaveEachTestTrackOncePerParticipant) {
   std::map<std::string, std::set<std::string>> met_with;  // Track to interfaces.
-  for (const Session& session : MakeSessions(Four())) {
+  for (const SessionPlan& session : MakeSessions(Four())) {
     std::set<std::string> tracks;
     for (const Phase& phase : session.phases) {
       if (phase.kind != PhaseKind::kTestTrack) continue;
@@ -88,7 +88,7 @@ TEST(Sessions, HaveEachTestTrackOncePerParticipant) {
 }
 
 TEST(Sessions, RepeatAStraightTaskOnlyWhenAllHadTheirTurn) {
-  for (const Session& session : MakeSessions(Four())) {
+  for (const SessionPlan& session : MakeSessions(Four())) {
     std::vector<std::string> tasks;
     for (const Phase& phase : session.phases) {
       if (phase.kind == PhaseKind::kStraight) tasks.push_back(phase.task);
@@ -104,7 +104,7 @@ TEST(Sessions, DependOnTheSeedAlone) {
     Protocol protocol = Four();
     protocol.seed = seed;
     std::vector<std::string> found;
-    for (const Session& session : MakeSessions(protocol)) {
+    for (const SessionPlan& session : MakeSessions(protocol)) {
       for (const Phase& phase : session.phases) {
         found.push_back(phase.id + phase.track + phase.task + std::to_string(phase.seed));
       }
@@ -118,7 +118,7 @@ TEST(Sessions, DependOnTheSeedAlone) {
 TEST(Sessions, GiveEveryTrialASeedOfItsOwn) {
   std::set<std::uint64_t> seeds;
   std::size_t trials = 0;
-  for (const Session& session : MakeSessions(Four())) {
+  for (const SessionPlan& session : MakeSessions(Four())) {
     for (const Phase& phase : session.phases) {
       if (!phase.is_trial()) continue;
       ++trials;
