@@ -94,7 +94,7 @@ with tempfile.TemporaryDirectory() as folder:
 
 # A mapping table and a style of one's own: a slower run, and a body that moves in another way.
 with tempfile.TemporaryDirectory() as folder:
-    built_in = pathlib.Path(__file__).parents[4] / "daemon/simulation/data/joystick_mapping.json"
+    built_in = pathlib.Path(__file__).parents[3] / "daemon/simulation/data/joystick_mapping.json"
     slow, wrong = pathlib.Path(folder, "slow.json"), pathlib.Path(folder, "wrong.json")
     slow.write_text(json.dumps(json.loads(built_in.read_text()) | {"run_speed_max_mps": 1.6}))
     wrong.write_text(json.dumps(json.loads(built_in.read_text()) | {"run_speed": 1.6}))
