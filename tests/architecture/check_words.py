@@ -6,7 +6,7 @@ Six kinds of text are read. `text`: string literals of .h and .cc files, scripts
 and the comments of .proto files. `comments`: comments of .h and .cc files. `names`: identifiers of
 .h and .cc files. `pages`: prose of .md files, which must not use the words of PAGE_RULES either.
 `sentences`: the same prose, in which a sentence has at most LONGEST_SENTENCE words.
-`openings`: comments of .h and .cc files, those of the tests too, which must not begin with "Of" or "What".
+`openings`: comments of .h, .cc and .proto files, those of the tests too, which must not begin with "Of" or "What".
 RULES name the words and what to write in their place; words_exceptions.csv lists
 the phrases that may stay, with the reason; words_allowed.csv says how many findings of a kind a
 folder may still have (a folder that it does not list: none). That number only ever goes down.
@@ -210,7 +210,7 @@ def find_in(kind, path, line, text, exceptions):
 def check_file(root, path, exceptions):
     relative = path.relative_to(root).as_posix()
     found = []
-    if path.suffix in (".h", ".cc"):
+    if path.suffix in (".h", ".cc", ".proto"):
         found += openings(relative, path.read_text())
         if relative.startswith("tests/"):
             return found

@@ -39,6 +39,7 @@ class Words(unittest.TestCase):
         self.assertEqual(found("/// Load of the left board.\n/// What it weighs.\nint x;  // Offset.\n"
                                'auto s = "// What";  // In N,\n                     // Of course.\n'), [])
         self.assertEqual(found("// What it told.\n", "tests/x.cc"), [("openings", 1, "What")])
+        self.assertEqual(found("int64 at_ns = 1;  // Of the exposure.\n", "proto/x.proto"), [("openings", 1, "Of")])
 
     def test_identifiers_are_read_word_by_word(self):
         self.assertEqual(found("int told_m; Bookshop stock; class RoleBook {};\n"),
