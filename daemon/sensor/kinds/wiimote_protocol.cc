@@ -1,7 +1,7 @@
 #include "daemon/sensor/kinds/wiimote_protocol.h"
 
 #include <algorithm>
-#include <iterator>
+#include <array>
 #include <variant>
 
 #include "daemon/sensor/kinds/balance_board.h"
@@ -11,52 +11,59 @@
 namespace footing::kinds {
 namespace {
 
-using balance_board::BalanceBoard;
-using pro_controller::ProController;
-using wiimote::Wiimote;
-
-template <typename One>
-std::unique_ptr<Speaker> Make(const decode::KindOptions& options) {
-  return std::make_unique<One>(options);
-}
-
-constexpr const handshake::Plan* kPlans[] = {&BalanceBoard::kPlan, &ProController::kPlan,
-                                             &Wiimote::kPlan};
-
-}  // namespace
-
-struct WiimoteProtocol::Entry {
+/// A device that speaks the protocol.
+struct Entry {
   const handshake::Plan* plan;
   bool (*matches)(const decode::Product& product);
   std::unique_ptr<Speaker> (*make)(const decode::KindOptions& options);
 };
 
-/// The first that matches; the last matches everything.
-const WiimoteProtocol::Entry WiimoteProtocol::kEntries[] = {
-    {&BalanceBoard::kPlan, &BalanceBoard::Matches, &Make<BalanceBoard>},
-    {&ProController::kPlan, &ProController::Matches, &Make<ProController>},
-    {&Wiimote::kPlan, &Wiimote::Matches, &Make<Wiimote>}};
-
-const WiimoteProtocol::Entry& WiimoteProtocol::EntryOf(const decode::Product& product) {
-  return *std::find_if(std::begin(kEntries), std::end(kEntries),
-                       [&](const Entry& entry) { return entry.matches(product); });
+template <typename One>
+constexpr Entry EntryOf() {
+  return {&One::kPlan, &One::Matches,
+          [](const decode::KindOptions& options) -> std::unique_ptr<Speaker> {
+            return std::make_unique<One>(options);
+          }};
 }
 
-WiimoteProtocol::WiimoteProtocol(const decode::KindOptions& options, const decode::Product& product)
-    : WiimoteProtocol(options, EntryOf(product)) {}
+/// The first that matches; the last matches everything.
+constexpr std::array kEntries = {EntryOf<balance_board::BalanceBoard>(),
+                                 EntryOf<pro_controller::ProController>(),
+                                 EntryOf<wiimote::Wiimote>()};
 
-WiimoteProtocol::WiimoteProtocol(const decode::KindOptions& options, const Entry& entry)
+constexpr auto kPlans = [] {
+  std::array<const handshake::Plan*, kEntries.size()> plans{};
+  std::transform(kEntries.begin(), kEntries.end(), plans.begin(),
+                 [](const Entry& entry) { return entry.plan; });
+  return plans;
+}();
+
+const handshake::Plan& PlanOf(const decode::Product& product) {
+  return *std::find_if(kEntries.begin(), kEntries.end(), [&](const Entry& entry) {
+            return entry.matches(product);
+          })->plan;
+}
+
+std::unique_ptr<Speaker> MakeSpeaker(const handshake::Plan& plan,
+                                     const decode::KindOptions& options) {
+  return std::find_if(kEntries.begin(), kEntries.end(),
+                      [&](const Entry& entry) { return entry.plan == &plan; })
+      ->make(options);
+}
+
+}  // namespace
+
+WiimoteProtocol::WiimoteProtocol(const decode::KindOptions& options, const decode::Product& product)
     : options_(options),
-      entry_(&entry),
-      sequencer_(options.handshake, *entry.plan, kPlans),
-      speaker_(entry.make(options)) {}
+      sequencer_(options.handshake, PlanOf(product), kPlans),
+      plan_(&sequencer_.plan()),
+      speaker_(MakeSpeaker(*plan_, options)) {}
 
 /// Follows the plan: the answer at the port decides which device it is, and blocks may be new.
 void WiimoteProtocol::FollowPlan() {
-  if (&sequencer_.plan() != entry_->plan) {
-    entry_ = std::find_if(std::begin(kEntries), std::end(kEntries),
-                          [&](const Entry& entry) { return entry.plan == &sequencer_.plan(); });
-    speaker_ = entry_->make(options_);
+  if (&sequencer_.plan() != plan_) {
+    plan_ = &sequencer_.plan();
+    speaker_ = MakeSpeaker(*plan_, options_);
   }
   speaker_->TakeBlocks(sequencer_);
 }

@@ -59,16 +59,11 @@ class WiimoteProtocol : public Kind {
   std::string Note(std::int64_t now_ns) const override;
 
  private:
-  struct Entry;
-  static const Entry kEntries[];
-  static const Entry& EntryOf(const decode::Product& product);
-
-  WiimoteProtocol(const decode::KindOptions& options, const Entry& entry);
   void FollowPlan();
 
   decode::KindOptions options_;
-  const Entry* entry_;
   handshake::HandshakeSequencer sequencer_;
+  const handshake::Plan* plan_;  ///< Plan of `speaker_`; the sequencer's may be another already.
   std::unique_ptr<Speaker> speaker_;
 };
 
