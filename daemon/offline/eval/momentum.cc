@@ -108,8 +108,9 @@ ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose
   for (std::size_t i = start; i < scene.frames.size(); ++i)
     vertical.push_back(momentum::ToVerticalInput(scene.frames[i].loads, kContactN));
   const auto height = momentum::SmoothVertical(
-      momentum::DoubtfulVertical(scene.subject.arms_hang_m, pose.cell_noise_n), pose.mass_kg,
-      step_s, pose.mean_loads, vertical);
+      momentum::HeightHypothesis(momentum::HeightRow::kInaccurate, scene.subject.arms_hang_m,
+                                 pose.cell_noise_n, pose.mass_kg),
+      pose.mass_kg, step_s, pose.mean_loads, vertical);
   const std::array<momentum::HorizontalPrior, 2> priors{momentum::ForwardPrior(),
                                                         momentum::LateralPrior()};
   ordered_json out;
@@ -139,8 +140,6 @@ ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 /// The T-pose at the scene's beginning, and the first frame after it.
 struct CalibratedStart {

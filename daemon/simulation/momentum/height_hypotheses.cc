@@ -139,10 +139,6 @@ VerticalConfig HeightHypothesis(HeightRow which, double arms_hang_m, double cell
   return config;
 }
 
-VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n) {
-  return HeightHypothesis(kInaccurate, arms_hang_m, cell_noise_n, 0);
-}
-
 HeightHypotheses::HeightHypotheses(double mass_kg, double step_s, double arms_hang_m,
                                    double cell_noise_n, const PostureError& posture)
     : filters_(FiltersOf(mass_kg, step_s, arms_hang_m, cell_noise_n, posture,
@@ -252,23 +248,23 @@ void HeightHypotheses::Recover(bool compare) {
 }
 
 void HeightHypotheses::WatchPlay(bool compare) {
-  VerticalCom& loose = Of(kPlay);
+  VerticalCom& with_play = Of(kPlay);
   double best = std::max(Of(kAccurate).score(), Of(kInaccurate).score());
   for (const HeightRow row : {kFreeMass, kFreeWeight}) {
     if (Active(row)) best = std::max(best, Of(row).score());
   }
-  const double lead = loose.score() - best;
-  const bool lost = loose.strayed() || (compare && lead < kFarBehind);
+  const double lead = with_play.score() - best;
+  const bool lost = with_play.strayed() || (compare && lead < kFarBehind);
   if (lost) {
-    loose.Adopt(Of(loose.strayed() ? kFreeWeight : FirstActive(kFreeWeight)));
-    loose.DoubtPlay();
+    with_play.Adopt(Of(with_play.strayed() ? kFreeWeight : FirstActive(kFreeWeight)));
+    with_play.DoubtPlay();
   }
-  const VerticalCom::Filter::Scalar play = loose.Play();
+  const VerticalCom::Filter::Scalar play = with_play.Play();
   const bool found = !lost && play.mean > kPlaySpreads * std::sqrt(play.variance);
   Decide(kPlay, SeesPosture() && found ? lead : -kNever);
   if (!compare || !found) return;
   for (const HeightRow row : {kAccurate, kInaccurate, kFreeMass}) {
-    if (Of(row).score() < loose.score() + kFarBehind) Of(row).Adopt(loose);
+    if (Of(row).score() < with_play.score() + kFarBehind) Of(row).Adopt(with_play);
   }
 }
 

@@ -24,8 +24,6 @@ inline constexpr std::size_t kHeightRows = 6;
 /// `mass_kg` are the T-pose's.
 VerticalConfig HeightHypothesis(HeightRow row, double arms_hang_m, double cell_noise_n,
                                 double mass_kg);
-/// The row of inaccurate cells, for SmoothVertical.
-VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n);
 
 /// Filters of the height, one a hypothesis, with the same states and inputs: an
 /// interacting multiple-model estimator with hard decisions. Each filter sums
