@@ -308,8 +308,6 @@ Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 stream::BoardPose PoseOf(const ordered_json& json) {
   return {json.at("x_m").get<double>(), json.at("y_m").get<double>(),
           json.at("yaw_rad").get<double>()};
@@ -391,8 +389,6 @@ Result<AcceptancePlan> ReadAcceptanceMetadata(const std::map<std::string, std::s
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 struct LayoutArguments {
   std::string rig = "main";

@@ -449,8 +449,6 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr double kScreenEveryS = 0.25;
 constexpr double kLineEveryS = 1;
 constexpr double kNoticeS = 5;  // For this time watch shows what slows the server.
@@ -584,8 +582,6 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 Result<void> RunDiscover(double within_s, const Shared& shared) {
   const auto found = discovery::Browse(within_s);

@@ -286,8 +286,6 @@ void AddRepairCommand(CLI::App& app, Shared& shared) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 double SecondsBetween(std::uint64_t from_ns, std::uint64_t to_ns) {
   return to_ns <= from_ns ? 0 : NanosecondsToSeconds(static_cast<std::int64_t>(to_ns - from_ns));
 }
@@ -428,8 +426,6 @@ void AddInfoCommand(CLI::App& app, Shared& shared) {
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 struct RecalibrateOptions {
   std::string in, out, camera;

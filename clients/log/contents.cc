@@ -464,8 +464,6 @@ Result<ExportedBids> ExportBids(const std::string& recording, const std::string&
 
 namespace {
 
-namespace pb = google::protobuf;
-
 bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }

@@ -52,8 +52,9 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
                                                  const std::string& folder, BodyFormat format,
                                                  bool replace);
 
-/// Forces under the feet of a reconstructed body, a table for OpenSim (.mot). Axes: x ahead, y up,
-/// z right.
+// Forces under the feet of a reconstructed body, a table for OpenSim (.mot). Axes: x ahead, y up,
+// z right.
+
 /// Ground reaction on one foot: upward force, N, at a point of the floor.
 struct FootForce {
   double load_n = 0;

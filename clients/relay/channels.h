@@ -83,8 +83,9 @@ class Thinner {
   std::uint64_t left_out_ = 0;
 };
 
-/// Where the messages of one server of one site go in NATS and MQTT. A message is an Envelope of
-/// our protocol, as it is within a frame.
+// Where the messages of one server of one site go in NATS and MQTT. A message is an Envelope of
+// our protocol, as it is within a frame.
+
 /// footing.SITE.SERVER.tick: every tick of the server.
 std::string TickSubject(const std::string& site, const std::string& server);
 /// footing.SITE.SERVER.ask: a Hello is answered by a Welcome and a snapshot, a Ping by a Pong.

@@ -218,8 +218,6 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
 
 namespace {
 
-namespace sensors = virtual_sensors;
-
 constexpr double kInsoleRateHz = 100;
 
 }  // namespace

@@ -156,8 +156,6 @@ std::optional<double> RecordedDevice::NextTime() const {
 
 Report RecordedDevice::Take() { return data_[next_++].bytes; }
 
-using virtual_devices::Report;
-
 namespace {
 
 /// A recorded device ignores the host's settings.

@@ -259,8 +259,6 @@ Result<bids::RecordedMotion> ReadTrial(const recording::RecordedSession& session
 
 namespace {
 
-using nlohmann::ordered_json;
-
 /// An allow-list: a key that a later footing-sim adds stays out until somebody has checked it.
 ordered_json Only(const ordered_json& object, std::initializer_list<const char*> keys) {
   ordered_json kept = ordered_json::object();

@@ -69,7 +69,8 @@ std::string Joined(const Texts& texts, std::string_view separator = ", ") {
   return all;
 }
 
-/// Numbers from and to text, the same under every locale.
+// Numbers from and to text, the same under every locale.
+
 /// A finite number that is the whole of `word`, or nothing.
 std::optional<double> ToNumber(std::string_view word);
 /// A whole number, not negative, or nothing.

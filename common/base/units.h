@@ -41,7 +41,8 @@ inline double NearestTurn(double angle_rad, double reference_rad) {
   return angle_rad + 2 * kPi * std::round((reference_rad - angle_rad) / (2 * kPi));
 }
 
-/// Stamps that come from files and other programs may be anything; clocks reach only some of them.
+// Stamps that come from files and other programs may be anything; clocks reach only some of them.
+
 /// Instants and offsets beyond it, 73 years either way, are refused: sums of three of them cannot
 /// overflow.
 inline constexpr std::int64_t kMostInstantNs = std::int64_t{1} << 61;

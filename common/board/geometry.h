@@ -112,13 +112,14 @@ class Plate {
   CornerForces last_;
 };
 
-/// The one way from a board's samples to an even rate: by their impulses.
-///
-/// Samples come irregularly, in ticks of their own, and whoever uses them has steps of a third
-/// clock. A load that is held until the next sample counts for too long or too short a time, and
-/// a velocity keeps that error. A mean over a window around an instant (SWARII) loses no impulse
-/// either, but comes half a window and a sample late. Impulses are added up by the samples' own
-/// times and are right whenever they are looked at; a step gets the mean load of its own time.
+// The one way from a board's samples to an even rate: by their impulses.
+//
+// Samples come irregularly, in ticks of their own, and whoever uses them has steps of a third
+// clock. A load that is held until the next sample counts for too long or too short a time, and
+// a velocity keeps that error. A mean over a window around an instant (SWARII) loses no impulse
+// either, but comes half a window and a sample late. Impulses are added up by the samples' own
+// times and are right whenever they are looked at; a step gets the mean load of its own time.
+
 /// Impulses on a board's cells until its newest sample.
 struct BoardImpulse {
   bool valid = false;

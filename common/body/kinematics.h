@@ -63,7 +63,8 @@ void PointJacobian(const Skeleton& skeleton, const Kinematics& at, int joint,
 void OrientationJacobian(const Skeleton& skeleton, const Kinematics& at, int joint,
                          JacobianRef out);
 
-/// Points of the body that sensors measure.
+// Points of the body that sensors measure.
+
 /// A point fixed to a joint's frame.
 struct Point {
   int joint = 0;

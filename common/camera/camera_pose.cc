@@ -406,7 +406,6 @@ stream::HandSample Recalibrated(const stream::HandSample& sample, const Eigen::I
 
 namespace {
 
-using Eigen::Vector3d;
 using Places = std::array<Vector3d, 3>;  // Origin, ahead, left, in C.
 
 constexpr double kLeastSpanM = 0.2;

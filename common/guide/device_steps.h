@@ -42,7 +42,8 @@ Pick WhichBoard(const std::vector<BoardLoad>& boards);
 /// The one hand device that is shaken, clearly more than every other.
 Pick WhichShaken(const std::vector<DeviceMotion>& devices);
 
-/// The items about devices. Each is a plain value; Advance() is called some twenty times a second.
+// The items about devices. Each is a plain value; Advance() is called some twenty times a second.
+
 /// A Bluetooth adapter, or devices that need none.
 class AdapterStep {
  public:

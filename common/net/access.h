@@ -49,8 +49,9 @@ struct AccessSettings {
 /// control; more words, such as whose it is, and what begins with # are comments.
 Result<std::map<std::string, v1::Role>> ParseClients(const std::string& text);
 
-/// Secrets by which clients over TCP and TLS get the role control, or only view. They are never
-/// logged.
+// Secrets by which clients over TCP and TLS get the role control, or only view. They are never
+// logged.
+
 /// The first line of a file that only its owner may read (mode 0600 or less): 16 to 256 printable
 /// characters without blanks.
 Result<std::string> ReadTokenFile(const std::string& path);

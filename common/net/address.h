@@ -38,7 +38,8 @@ inline Result<Address> AddressOrDefault(const std::string& text, const std::stri
   return text.empty() ? Result<Address>(DefaultAddress(name)) : ParseAddress(text);
 }
 
-/// Checks of a server before it listens where others than this host's users reach it.
+// Checks of a server before it listens where others than this host's users reach it.
+
 /// Settings that an administrator gives, by the names that the program has for them.
 struct ListenSettings {
   std::string keys = "set token_file or clients_file";

@@ -190,8 +190,9 @@ inline constexpr std::size_t kBuffersPerTick = 8;
 void AddTick(const TickQueue::Entry& entry, const Subscription& subscription, TickHead head,
              WriteBatch& batch);
 
-/// Who may come in, and as what: a state machine over the Hello messages of all sessions of a
-/// server, without sockets and clocks.
+// Who may come in, and as what: a state machine over the Hello messages of all sessions of a
+// server, without sockets and clocks.
+
 /// Whose Hello it is, as the kernel and TLS know it.
 struct Caller {
   Peer peer;

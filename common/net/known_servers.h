@@ -27,7 +27,8 @@ class KnownServers {
   std::string path_;
 };
 
-/// Where the files of TLS are. Each is empty if there is not even a home folder.
+// Where the files of TLS are. Each is empty if there is not even a home folder.
+
 /// A server's own key and certificate: "identity.pem" in $STATE_DIRECTORY (set by systemd), else in
 /// $XDG_STATE_HOME/footing, else in ~/.local/state/footing.
 std::string DefaultIdentityFile();

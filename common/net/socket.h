@@ -141,7 +141,8 @@ std::string MessageOf(const boost::system::error_code& error);
 /// Why a connection is over after this error, perhaps within a frame.
 std::string CloseReason(const boost::system::error_code& error, bool inside_frame);
 
-/// The file behind a Unix socket: whose it is, and when it may go.
+// The file behind a Unix socket: whose it is, and when it may go.
+
 /// Clears the way for a server at `path` and calls `bind` there, all under a lock on the folder, so
 /// that two servers started at once cannot take each other's file. Only a socket that nobody
 /// answers on is removed. `address_text` is for the error line.

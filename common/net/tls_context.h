@@ -68,7 +68,8 @@ class Context {
   std::shared_ptr<ssl_ctx_st> shared_;
 };
 
-/// The SHA-256 of a certificate (of its DER bytes), by which people and programs know it again.
+// The SHA-256 of a certificate (of its DER bytes), by which people and programs know it again.
+
 /// "sha256:" and 64 hexadecimal digits in lower case.
 std::string FingerprintOf(std::string_view der);
 

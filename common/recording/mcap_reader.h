@@ -69,7 +69,8 @@ Result<void> VisitMessages(std::string_view file, const Summary& summary, std::u
                            std::uint64_t end_ns,
                            const std::function<void(const Message&)>& handler);
 
-/// Reading a file from any place. What is not read is not touched.
+// Reading a file from any place. What is not read is not touched.
+
 /// Checks one chunk: its CRC, and that every record in it is complete. InvalidData with the byte
 /// offset when it is damaged or compressed.
 Result<void> CheckChunk(std::string_view file, const ChunkIndex& index);

@@ -194,9 +194,10 @@ void Encode(const SummaryOffset& record, std::string& out);
 void EncodeFooter(const Footer& record, std::string_view summary, std::string& out);
 void EncodeDataEnd(std::uint32_t data_section_crc, std::string& out);
 
-/// Record bodies to values. Every length is checked against the bytes that are there before
-/// anything is made of it; nothing when a body is too short for what it says. Bytes behind the
-/// known fields are allowed, as the specification asks.
+// Record bodies to values. Every length is checked against the bytes that are there before
+// anything is made of it; nothing when a body is too short for what it says. Bytes behind the
+// known fields are allowed, as the specification asks.
+
 /// Reads little-endian fields; once something goes past the end it stays not ok and gives zeros.
 class Cursor {
  public:

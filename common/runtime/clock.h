@@ -70,11 +70,12 @@ bool ReadMessage(int descriptor, Message& message);
 template <typename Message>
 bool WriteMessage(int descriptor, const Message& message);
 
-/// The clocks of the host. Pure code takes time as an argument instead.
-///
-/// Where the process follows a timekeeper its threads have simulated time: it stands still while
-/// they work, and goes on to the next instant at which one of them has something to do. Then a
-/// study of hours runs in minutes, and equal inputs give equal bits.
+// The clocks of the host. Pure code takes time as an argument instead.
+//
+// Where the process follows a timekeeper its threads have simulated time: it stands still while
+// they work, and goes on to the next instant at which one of them has something to do. Then a
+// study of hours runs in minutes, and equal inputs give equal bits.
+
 /// CLOCK_MONOTONIC in nanoseconds: the clock of every stamp in the protocol.
 std::int64_t MonotonicNs();
 

@@ -140,9 +140,10 @@ double MaxTail(const ManyToOne& family, double t);
 /// The t with MaxTail(family, t) = `tail`, which is in (0, 0.5).
 double MaxQuantile(const ManyToOne& family, double tail);
 
-/// Quantiles of what a study reports: linear between the two nearest values, as in R (type 7) and
-/// NumPy, so that a median is the mean of the two values in the middle. Those of common/base are
-/// values that occurred.
+// Quantiles of what a study reports: linear between the two nearest values, as in R (type 7) and
+// NumPy, so that a median is the mean of the two values in the middle. Those of common/base are
+// values that occurred.
+
 /// `share` is in [0, 1]. There must be one value.
 inline double QuantileOf(std::vector<double> values, double share) {
   FOOTING_CHECK(!values.empty() && share >= 0 && share <= 1);

@@ -162,8 +162,6 @@ std::string SetupTable(const std::vector<stream::RigSetup>& rigs) {
 
 namespace {
 
-using stream::DeviceStatus;
-
 std::string Lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -735,9 +735,6 @@ std::vector<Check> HostChecks() {
 
 namespace {
 
-using stream::DeviceKind;
-using stream::DeviceStatus;
-
 std::string Redo(const stream::RigSetup& rig, const stream::SetupItem& item) {
   return "footing-ctl setup --rig " + rig.rig + " --only " + item.name;
 }

@@ -244,8 +244,6 @@ ordered_json LiveToJson(const Live& live, double seconds) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 std::string Plural(std::uint64_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }

@@ -54,7 +54,8 @@ std::string ServerLine(const stream::ServerStats& stats);
 /// A line a session: who it is, what waits for it, what it lost; empty without a session.
 std::string SessionTable(const stream::ServerStats& stats);
 
-/// Small pieces of text for a terminal. No locale.
+// Small pieces of text for a terminal. No locale.
+
 /// "1.5"; decimals 0 to 9. What is not finite is "-".
 std::string Fixed(double value, int decimals);
 

@@ -82,7 +82,8 @@ struct Facts {
 /// The first process, or the person at the console where none runs: whoever opens the nodes.
 const User& OpenerOfNodes(const Facts& facts);
 
-/// The texts from which facts come: pure functions of what a file or program said.
+// The texts from which facts come: pure functions of what a file or program said.
+
 /// Keys and values of an INI file as BlueZ reads it; comments and sections are dropped, values in
 /// lower case.
 std::map<std::string, std::string> ParseIni(const std::string& text);

@@ -197,7 +197,8 @@ class Director {
   double published_s_ = -1e9;
 };
 
-/// Points, from published facts alone. The paper had no score; docs/game.md has the rules.
+// Points, from published facts alone. The paper had no score; docs/game.md has the rules.
+
 /// Points of the runner.
 inline constexpr double kPointsPerM = 1;
 inline constexpr double kPointsPerFailure = -5;

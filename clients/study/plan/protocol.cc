@@ -203,8 +203,6 @@ Result<Protocol> ParseProtocol(const std::string& text, const std::string& file)
 
 namespace {
 
-using nlohmann::ordered_json;
-
 std::string Short(double value) { return ordered_json(value).dump(); }
 
 }  // namespace

@@ -74,7 +74,8 @@ statistics::StudyTable RateTableOf(const Measure& counts, const plan::Protocol& 
 /// Caveats on the values of a measure that limit its tests, in sentences; empty: none.
 std::string NoteOn(const Measure& measure, const plan::Protocol& protocol);
 
-/// Figures as SVG that stands in an HTML page: classes take their colours from the page's style.
+// Figures as SVG that stands in an HTML page: classes take their colours from the page's style.
+
 /// Marks of an axis, evenly spaced at 1, 2 or 5 times a power of ten, that enclose both values; of
 /// counts at whole numbers.
 std::vector<double> Ticks(double least, double greatest, bool counts = false);

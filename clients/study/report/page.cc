@@ -277,8 +277,6 @@ std::string AnswerTable(const std::vector<records::Records>& people) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr const char* kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:72rem;margin:2rem auto;"
     "padding:0 1rem}h1,h2,h3{font-weight:300}h2{margin-top:3rem;border-bottom:1px solid #ccc}"

@@ -80,8 +80,9 @@ class Lock {
   int descriptor_ = -1;
 };
 
-/// Where a study's files are: beside its protocol NAME.json the folder NAME, in it a folder for
-/// each participant with journal.jsonl and the recordings. All of it is readable by its owner only.
+// Where a study's files are: beside its protocol NAME.json the folder NAME, in it a folder for
+// each participant with journal.jsonl and the recordings. All of it is readable by its owner only.
+
 /// The folder of a protocol file: its path without .json, with ".study" at the end.
 std::string FolderOf(const std::string& protocol_path);
 std::string ParticipantFolder(const std::string& study_folder, const std::string& participant);

@@ -269,8 +269,6 @@ Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol
 
 namespace {
 
-using nlohmann::ordered_json;
-using records::EventKind;
 using stream::StudyActivity;
 
 constexpr const char* kFinished = "finished";  // The outcome of a trial at its finish line.
@@ -523,8 +521,6 @@ Result<Servers*> SessionRun::UseInterface(const std::string& interface) {
 }
 
 namespace {
-
-using records::EventKind;
 
 constexpr double kReminderS = 60;
 

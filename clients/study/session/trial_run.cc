@@ -184,9 +184,6 @@ ordered_json TrialEvents::Figures() const {
 
 namespace {
 
-using nlohmann::ordered_json;
-using records::EventKind;
-
 constexpr double kConfirmedWithinS = 2;
 constexpr double kLinksWithinS = 10;  // Beyond the time after which a link counts as broken.
 // Longer than a pause of the radio, shorter than it takes the participant to wonder.

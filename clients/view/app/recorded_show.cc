@@ -236,8 +236,6 @@ Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording) {
 
 namespace {
 
-using playback::PlacedTick;
-
 constexpr std::int64_t kSecond = kNanosecondsPerSecond;
 constexpr std::int64_t kStepNs = kSecond / 60;
 /// Ticks are read in blocks of so much time.

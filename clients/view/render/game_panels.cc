@@ -264,8 +264,6 @@ void DrawInterfacePanel(const Paint& p, const Box& box, const stream::InterfaceS
 
 namespace {
 
-using stream::Gait;
-
 constexpr float kCaption = 14;
 constexpr float kTint = 0.30f, kLit = 0.75f;
 constexpr double kMostHz = 5, kMostFootHz = 2.5;

@@ -26,8 +26,9 @@ PanelHeight InterfacePanelHeight(const stream::InterfaceState& state);
 /// the command of each of their parts, and below them the present command.
 void DrawInterfacePanel(const Paint& paint, const Box& box, const stream::InterfaceState& state);
 
-/// The gauges of the interface panel. Each shows one quantity of the person's motion and, in the
-/// colours of the gaits, what its parts command. A caption stands in the lowest row of its box.
+// The gauges of the interface panel. Each shows one quantity of the person's motion and, in the
+// colours of the gaits, what its parts command. A caption stands in the lowest row of its box.
+
 /// Right minus left limb: 0 at the top, where both move together and jump.
 void DrawPhaseGauge(const Paint& paint, const Box& box, const stream::InterfaceState& state);
 /// Walking below the border, running above it.

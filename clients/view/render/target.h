@@ -74,7 +74,8 @@ class Program {
   GLuint program_ = 0;
 };
 
-/// Meshes in the graphics driver's buffers. All need their OpenGL context current.
+// Meshes in the graphics driver's buffers. All need their OpenGL context current.
+
 /// A mesh that is drawn as it was uploaded.
 class StaticMesh {
  public:

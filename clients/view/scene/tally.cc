@@ -221,10 +221,6 @@ void AddBird(const BirdSkeleton& skeleton, const CharacterPose& pose, const Bird
 
 namespace {
 
-using Eigen::Matrix3f;
-using Eigen::Matrix4f;
-using Eigen::Vector3f;
-
 // Metres, chosen by eye.
 const Vector3f kNeckBase(0.20f, 0, 0.13f);
 constexpr float kHeadAheadM = 0.40f;

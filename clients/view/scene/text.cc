@@ -438,7 +438,6 @@ std::vector<std::string> TrialLines(const stream::TrialState& trial, const strea
 namespace {
 
 using stream::Activity;
-using stream::UserInterface;
 
 bool IsOfFeet(UserInterface interface) {
   return interface == UserInterface::kLeg || interface == UserInterface::kBoards;

@@ -60,7 +60,8 @@ std::string NoticeText(const Model& model, int source, std::int64_t now_ns);
 /// Notices of all servers, at the end of a log line, for 3 s: a line comes every second.
 std::string NoticesOfLogLine(const Model& model, std::int64_t now_ns);
 
-/// A trial as a person reads it.
+// A trial as a person reads it.
+
 /// True for a trial worth showing: somebody named it, or its track has a finish line.
 bool ShowsTrial(const stream::TrialState& trial);
 
@@ -82,7 +83,8 @@ std::string AttemptText(const stream::TrialState& trial);
 /// All of it and the place on the track, a line each.
 std::vector<std::string> TrialLines(const stream::TrialState& trial, const stream::Track& track);
 
-/// A user interface's belief in words, for screens and logs.
+// A user interface's belief in words, for screens and logs.
+
 /// "left hand".
 std::string RoleText(stream::DeviceRole role);
 

@@ -149,8 +149,6 @@ std::vector<std::array<FootForce, kFeet>> ShareThroughout(
 
 namespace {
 
-using body::Landmark;
-
 constexpr double kLeastFootM = 0.02;  // From ankle to toe over the ground; shorter is on end.
 constexpr double kMostTurnRad = 0.8;
 // Further apart nobody stands upright for five seconds; closer, one foot is on the other.

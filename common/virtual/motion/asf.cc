@@ -259,7 +259,6 @@ Result<AsfText> ParseAsfText(std::string_view text, const std::string& file) {
 
 namespace {
 
-using body::Axis;
 using Bone = AsfText::Bone;
 
 constexpr double kInchM = 0.0254;

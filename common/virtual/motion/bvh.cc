@@ -297,9 +297,6 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
 
 namespace {
 
-using body::Axis;
-using body::Joint;
-
 constexpr int kDecimals = 6;  // For centimetres and degrees: finer than any capture, and stable.
 
 /// A joint as the file can hold it: three rotations about the plain axes.
@@ -413,9 +410,6 @@ std::string WriteBvh(const Motion& motion) {
 }
 
 namespace {
-
-using body::Axis;
-using body::Joint;
 
 /// The joints from `top` on, with `top` as the root.
 body::Skeleton From(const body::Skeleton& skeleton, int top) {

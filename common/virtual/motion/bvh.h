@@ -29,7 +29,8 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file,
 /// turns is written as three rotations.
 std::string WriteBvh(const Motion& motion);
 
-/// The joints of a BVH file between its root and the joint on which the legs hang.
+// The joints of a BVH file between its root and the joint on which the legs hang.
+
 /// Number of joints below the root down to the first one with several children: joints 1 to n, each
 /// on the one before. Several programs put a joint on the floor there and move the hips on it.
 int StemLength(const body::Skeleton& skeleton);

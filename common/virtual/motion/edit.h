@@ -57,7 +57,8 @@ Result<Motion> WithLandmarksOnly(const Motion& motion);
 /// the person looks along x with the hips over the origin.
 Motion FacingForward(const Motion& motion, const body::Landmarks& landmarks);
 
-/// Smoothing and derivatives of sampled signals: a row a signal, a column a time, at equal steps.
+// Smoothing and derivatives of sampled signals: a row a signal, a column a time, at equal steps.
+
 /// Low-pass without lag: a Butterworth filter of second order run forwards, then backwards, with
 /// the ends continued by point reflection. Both passes together have -3 dB at `cutoff_hz` (D.
 /// Winter, "Biomechanics and Motor Control of Human Movement", 2.2.4.4: the single filter's

@@ -301,8 +301,6 @@ Result<MarkerFit> FitMarkers(const MarkerTracks& tracks, const MarkerFitOptions&
 
 namespace {
 
-using body::Landmark;
-
 constexpr Eigen::Index kMostFrames = 400;              // Frames of a trial that its lengths take.
 constexpr double kLeastRatio = 0.6, kMostRatio = 1.6;  // Ratio of a length to the standard one.
 

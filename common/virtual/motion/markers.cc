@@ -373,7 +373,6 @@ MarkerCarriers FindCarriers(const body::Skeleton& skeleton, const body::Landmark
 
 namespace {
 
-using body::Landmark;
 using MaybePoint = std::optional<Eigen::Vector3d>;
 
 // From a lateral marker's centre to the joint's, m: half the width of an adult's joint and the

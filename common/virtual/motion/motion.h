@@ -52,7 +52,8 @@ Result<std::string> WriteC3d(const C3d& c3d);
 /// Others are an error that names the type.
 Result<GroundForces> ToGroundForces(const C3d& c3d, const std::string& file);
 
-/// Recorded movement: files of motion capture and of force plates, as plain values in SI.
+// Recorded movement: files of motion capture and of force plates, as plain values in SI.
+
 /// Limits of every reader, checked before memory is taken.
 inline constexpr std::size_t kMostJoints = 1024;
 inline constexpr std::size_t kMostDepth = 128;

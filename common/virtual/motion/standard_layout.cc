@@ -170,8 +170,6 @@ HingeAxes FindHingeAxes(const Motion& motion, const body::Landmarks& landmarks,
 
 namespace {
 
-using body::Landmark;
-
 constexpr double kPelvisDepthM = 0.15;  // Any: the regression of the hips is met with it.
 
 /// A marker on a joint's frame.

@@ -72,7 +72,8 @@ inline std::optional<double> ToValue(std::string_view word) {
   return number && std::abs(*number) <= kGreatestValue ? number : std::nullopt;
 }
 
-/// TRC: marker places as text, a row a frame (Motion Analysis; OpenSim).
+// TRC: marker places as text, a row a frame (Motion Analysis; OpenSim).
+
 /// Reads one in its own axes (OpenSim's: FileAxes::kYUp). A marker whose three fields are empty,
 /// not numbers ("NaN"), or all exactly 0 was not seen in that frame. `file` is the name for errors,
 /// which say the line and what was expected there.

@@ -133,8 +133,6 @@ void JumpTiming::End() {
 
 namespace {
 
-using stream::Gait;
-
 constexpr double kRememberedS = 2;
 /// Share of the turning rate there is that a user plans with.
 constexpr double kTurnShare = 0.85;

@@ -286,8 +286,6 @@ void LimbBody::Feel(Felt& felt) const {
 
 namespace {
 
-using stream::Gait;
-
 /// Ordinary frequencies of one foot, Hz. People were shown that a jog, faster than 1.2 Hz, runs.
 constexpr double kWalkSlowHz = 0.55, kWalkFastHz = 0.95, kRunSlowHz = 1.5, kRunFastHz = 2.0;
 /// Feet stand in the middle of their boards (their layout one_foot_each).
@@ -389,8 +387,6 @@ void BoardBody::Feel(Felt& felt) const {
 }
 
 namespace {
-
-using stream::UserInterface;
 
 std::variant<LimbBody, StickBody, BoardBody> BodyFor(UserInterface interface, const Style& style,
                                                      std::uint64_t seed,

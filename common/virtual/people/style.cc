@@ -145,9 +145,6 @@ void StickBody::Feel(Felt& felt) const {
 
 namespace {
 
-using stream::Gait;
-using stream::UserInterface;
-
 /// Which side; how far is a matter of the style.
 constexpr double kLeftRad = 0.1, kRightRad = -0.1;
 /// Size of a gentle jump.
@@ -221,8 +218,6 @@ const Intention& WantedAt(const std::vector<Act>& acts, double time_s) {
   }
   return acts.back().wanted;
 }
-
-using stream::UserInterface;
 
 namespace {
 

@@ -35,8 +35,9 @@ struct Felt {
   std::array<virtual_sensors::FootForce, 2> feet;
 };
 
-/// Synthetic users: what they see, what they want, and how their bodies do it. Frames: world W
-/// (x forward, y left, z up), sensor S of a Wiimote (x left, y front, z down). SI units.
+// Synthetic users: what they see, what they want, and how their bodies do it. Frames: world W
+// (x forward, y left, z up), sensor S of a Wiimote (x left, y front, z down). SI units.
+
 /// Traits that make a user an individual.
 struct Style {
   double reaction_s = 0.3;     ///< From the picture to a decision; 0.2 to 0.4.

@@ -235,8 +235,6 @@ std::vector<double> NeesScore::Parts(std::size_t count) const {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 struct Flags {
   PoseSceneOptions scene;
   std::string model;

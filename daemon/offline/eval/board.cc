@@ -268,8 +268,6 @@ void AddBoardCommand(CLI::App& app, Shared& shared) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 /// Advice of posturography: at least 50 Hz, and a low-pass at 10 Hz (Ruhe A et al., The
 /// test-retest reliability of centre of pressure measures in bipedal static task conditions, Gait &
 /// Posture 32(4), 2010; Scoppa F et al., Clinical stabilometry standardization, Gait & Posture

@@ -300,8 +300,6 @@ KneeError SplitKneeError(const LegPlaces& truth, const LegPlaces& estimate) {
 
 namespace {
 
-using stream::BodyJoint;
-
 constexpr double kSeenFromDeg = 35;  // From the front to the left, as the crouches of eval pose.
 
 void AddMoment(const std::string& name, const Figure7::Moment& moment,

@@ -140,8 +140,6 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
   });
 }
 
-using nlohmann::ordered_json;
-
 Result<ordered_json> ScoreInsoles(const pose_run::InsoleRun& run,
                                   const reconstruction::Models& models,
                                   const reconstruction::Options& options) {
@@ -185,8 +183,6 @@ Result<ordered_json> ScoreInsoles(const pose_run::InsoleRun& run,
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 double Still(const pose_run::PoseRun& run, const Eigen::VectorXd& q, std::size_t start) {
   PoseScore score(run.body);
@@ -244,8 +240,6 @@ Result<ordered_json> ScoreBaselines(const pose_run::PoseRun& run,
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr double kRunS = 0.05;
 constexpr double kLeastSpeedMps = 0.05;

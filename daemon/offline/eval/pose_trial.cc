@@ -190,7 +190,6 @@ Result<ordered_json> RunPoseTrial(const pose_run::PoseRun& run,
 
 namespace {
 
-using nlohmann::ordered_json;
 using reconstruction::Mode;
 
 constexpr std::array kReported{"mpjpe_cm",
@@ -267,7 +266,6 @@ Result<ordered_json> ScoreAblations(const pose_run::PoseRun& run,
 namespace {
 
 using body::Landmark;
-using nlohmann::ordered_json;
 using pose_run::LegScore;
 using pose_run::LiftOffs;
 
@@ -337,8 +335,6 @@ ordered_json PoseBreakdown::Json() const {
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 // Boards without contact for longer than a flight lasts have nobody on them.
 constexpr double kMostFlightS = 1;

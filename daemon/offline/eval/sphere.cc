@@ -294,8 +294,6 @@ Result<ordered_json> RunSphereTrial(const SphereTrial& trial, const frames::Came
   return row;
 }
 
-using nlohmann::ordered_json;
-
 void SphereErrors::Add(const sphere::Estimate& found, const Eigen::Vector3d& truth_m) {
   const Eigen::Vector3d error = found.p_C_m - truth_m, along = truth_m.normalized();
   const double depth = error.dot(along);
@@ -366,8 +364,6 @@ void EstimateRows::Add(int frame, std::size_t sphere, const std::optional<sphere
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 struct SphereFlags {
   std::string frames, camera;
@@ -442,8 +438,6 @@ void AddSphereCommand(CLI::App& app, Shared& shared) {
 }
 
 namespace {
-
-using nlohmann::ordered_json;
 
 struct TrialFlags {
   SphereTrial trial;

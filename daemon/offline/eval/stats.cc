@@ -109,8 +109,6 @@ void AddStatsCommand(CLI::App& app, Shared& shared) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 /// Four significant digits; "-" where the report has none.
 std::string Cell(const ordered_json& value) {
   if (value.is_string()) return value.get<std::string>();

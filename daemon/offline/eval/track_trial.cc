@@ -400,7 +400,6 @@ namespace {
 
 using stream::DeviceRole;
 using stream::TurnSource;
-using stream::UserInterface;
 
 constexpr double kBoardHz = 60;
 constexpr double kBoardGapM = 0.02;

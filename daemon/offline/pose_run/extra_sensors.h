@@ -50,8 +50,9 @@ class KinectBody {
   std::array<reconstruction::HandTrack, virtual_sensors::KinectSkeleton::kPoints> tracks_;
 };
 
-/// Sensors that a lab may add to boards and hands (docs/evaluation/pose.md). Their random numbers
-/// are their own: a run with them has the boards and hands of the run without. Source of the place
+// Sensors that a lab may add to boards and hands (docs/evaluation/pose.md). Their random numbers
+// are their own: a run with them has the boards and hands of the run without. Source of the place
+
 /// of the head.
 enum class HeadDevice {
   kNone,

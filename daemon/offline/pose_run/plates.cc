@@ -175,9 +175,6 @@ FeltForces FeelPlates(const motion::Motion& clip, const sensors::Scene& scene,
 
 namespace {
 
-namespace sensors = virtual_sensors;
-using sensors::kFeet;
-
 constexpr double kLeastSupportedS = 0.5;
 /// The first frames of a clip have the forces of leaving the T-pose in them: the low-pass of the
 /// motion spreads them so far.

@@ -40,7 +40,8 @@ struct FeltForces {
 FeltForces FeelPlates(const motion::Motion& clip, const virtual_sensors::Scene& scene,
                       const motion::GroundForces& forces);
 
-/// Measured force plates in place of inverse dynamics.
+// Measured force plates in place of inverse dynamics.
+
 /// Use of a trial's plates and their agreement with the motion.
 struct PlateReport {
   std::vector<PlateUse> plates;
@@ -82,7 +83,8 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
 /// than five seconds, and for one that begins or ends with the COM faster than 0.3 m/s.
 Eigen::Matrix3Xd ComByPlates(const PoseRun& run, const FeltForces& felt, double begin_s);
 
-/// The centre of mass by the forces of plates alone, without masses of segments.
+// The centre of mass by the forces of plates alone, without masses of segments.
+
 /// Forces of all plates together, a column a frame, W.
 struct ForceCourse {
   double rate_hz = 0;

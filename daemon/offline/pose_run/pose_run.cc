@@ -230,8 +230,6 @@ Crouch DeepestCrouch(const PoseRun& run, std::size_t from) {
   return deepest;
 }
 
-namespace sensors = virtual_sensors;
-
 Result<InsoleRun> RunInsoles(const motion::Motion& clip, const Settings& settings,
                              const std::string& origin) {
   const auto scene = Stage(clip, settings, origin);
@@ -362,8 +360,6 @@ Result<Eigen::Vector2d> StandingOffset(const motion::Motion& still,
   return offset;
 }
 
-namespace sensors = virtual_sensors;
-
 namespace {
 
 /// Errors of a Wiimote in a fist, or strapped.
@@ -450,8 +446,6 @@ Result<ArmRun> RunArms(const motion::Motion& clip, const Settings& settings,
 }
 
 namespace {
-
-using body::Landmark;
 
 constexpr double kBentRad = 35 * kPi / 180;
 constexpr double kCrouchedShare = 0.9;  // In parts of the T-pose's height of the COM.

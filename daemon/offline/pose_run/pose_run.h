@@ -183,7 +183,8 @@ struct InsoleRun {
 Result<InsoleRun> RunInsoles(const motion::Motion& clip, const Settings& settings,
                              const std::string& origin);
 
-/// Plates against markers, by somebody who stands still on them.
+// Plates against markers, by somebody who stands still on them.
+
 /// How far the body's centre of mass is from over the plates' centre of pressure, in the mean of a
 /// trial in which a person stands still, where one must be over the other: along x and y of the
 /// files' W, m. What plates, markers and the masses of segments are wrong by together. InvalidData
@@ -241,7 +242,8 @@ struct ArmRun {
 Result<ArmRun> RunArms(const motion::Motion& clip, const Settings& settings,
                        const std::string& origin, const Places& places = kFists);
 
-/// Activity of the person, frame by frame: scores of a clip that mostly stands say little of
+// Activity of the person, frame by frame: scores of a clip that mostly stands say little of
+
 /// squats. [begin_s, end_s) on the motion's clock.
 struct ActivitySpan {
   double begin_s = 0, end_s = 0;

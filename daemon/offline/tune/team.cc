@@ -205,8 +205,6 @@ void Evolve(SearchState& state, const Evaluate& evaluate, std::uint64_t seed) {
 
 namespace {
 
-using stream::Gait;
-
 struct Row {
   const char* gain;
   double scale;

@@ -316,8 +316,6 @@ Result<void> ReplaceFile(const std::string& path, const std::string& text) {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 std::string Short(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);

@@ -140,8 +140,9 @@ class DeviceFeatureExtractor {
   std::int64_t computed_index_ = 0;  ///< Grid index of the newest point already taken in.
 };
 
-/// Two hands that swing together, seen without their period. Ours: eq. (4) needs a period, and has
-/// none for up to two cycles while both hands change from one motion to another.
+// Two hands that swing together, seen without their period. Ours: eq. (4) needs a period, and has
+// none for up to two cycles while both hands change from one motion to another.
+
 /// Normalised cross-correlation at lag 0 of the newest `span_s` of both controllers, -1 to 1, with
 /// the means removed and the right one turned by `from_right` (PairGrip): high when both move
 /// alike, below zero when they alternate, whatever the period. 0: there are not so many samples, or

@@ -125,8 +125,6 @@ std::uint8_t AcknowledgedReport(Step step) {
 
 namespace {
 
-using reports::MemoryRead;
-
 constexpr double kNoAckTimeoutS = 0.05;  // For a device that never acknowledged.
 
 }  // namespace

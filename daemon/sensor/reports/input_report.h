@@ -117,7 +117,8 @@ class Interleaver {
 /// Charge in a Wiimote's status, 0 to 1: bars at 0x33, 0x44, 0x55, full at 0x7c (hid-wiimote).
 double BatteryFraction(std::uint8_t raw);
 
-/// The bright points that a Wiimote's infrared camera sees.
+// The bright points that a Wiimote's infrared camera sees.
+
 /// At most four, only those seen. The format is known by the size (WiiBrew, "Wiimote/IR camera"):
 /// 10 bytes basic (no sizes), 12 extended, 18 half of full (points 1 and 2, or 3 and 4), 36 full;
 /// any other size gives none. A point that is not seen is all FF; one whose row or column is

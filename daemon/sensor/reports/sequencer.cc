@@ -430,7 +430,6 @@ std::string HandshakeSequencer::Note(std::int64_t now_ns) const {
 // data flow.
 namespace {
 
-using reports::Extension;
 using stream::CalibrationOrigin;
 
 bool IsActiveMotionPlus(Extension extension) {

@@ -231,8 +231,6 @@ GyroscopeReading Calibrate(const MotionPlusCalibration& calibration,
 
 namespace {
 
-using stream::CalibrationOrigin;
-
 /// Bounds of what a working sensor can have; a real unit: zero near 500, 1 g 204 above.
 constexpr int kNunchukMinZero = 350;
 constexpr int kNunchukMaxZero = 680;

@@ -570,9 +570,6 @@ Result<void> Hub::AssignRole(const std::string& serial, const Binding& binding) 
 // The set-up's commands, and which part of the stored set-up holds for which device.
 namespace {
 
-using decode::Placement;
-using stream::DeviceRole;
-
 constexpr double kTareWindowS = 2;
 constexpr double kLeastTareWindowS = 0.5;
 constexpr double kMostTareWindowS = 30;

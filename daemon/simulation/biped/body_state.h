@@ -59,7 +59,8 @@ struct GaitCommand {
   bool operator==(const GaitCommand&) const = default;
 };
 
-/// The commands under which each gait was found stable (docs/gait.md).
+// The commands under which each gait was found stable (docs/gait.md).
+
 /// The largest turn of a step at any speed: what a mapping may ask for.
 inline constexpr double kTurnPerStepMaxDeg = 8;
 

@@ -60,8 +60,9 @@ using track::Locate;
 using track::PlaceAt;
 using track::TrackPlace;
 
-/// Ground that is added to a track's end while a character is on it, as in the gait paper's terrain
-/// editor (section 8). Nothing here allocates while the track's capacity suffices.
+// Ground that is added to a track's end while a character is on it, as in the gait paper's terrain
+// editor (section 8). Nothing here allocates while the track's capacity suffices.
+
 /// A segment to add: 2 to 4 m long, of a pit 0.3 to 1.5 m, its slope within 5 degrees, its curve
 /// within 15 degrees, its step within 0.10 m. A pit has none of these three.
 using NewSegment = track::Piece;
@@ -85,9 +86,10 @@ void Append(const NewSegment& segment, stream::Track& track);
 /// The same with a segment that Append has placed on another copy of the track.
 void Add(const stream::TrackSegment& placed, stream::Track& track);
 
-/// A track that continues itself ahead of a character, so that whoever practises stays on it. The
-/// segments follow the direction of travel of the last ten metres: short turns to the left and
-/// right leave the track straight, a lasting turn bends it.
+// A track that continues itself ahead of a character, so that whoever practises stays on it. The
+// segments follow the direction of travel of the last ten metres: short turns to the left and
+// right leave the track straight, a lasting turn bends it.
+
 /// So much of the track lies ahead of the character at least, m.
 inline constexpr double kEndlessAheadM = 8;
 

@@ -306,8 +306,6 @@ double FootholdShift(const Context& context, const GaitMemory& memory) {
 
 namespace {
 
-using Eigen::Vector3d;
-
 /// Angular momentum of one link: its centre's motion about the COM, and its own spin.
 Vector3d LinkMomentum(const biped::BodyState& body, const biped::BipedParameters& biped,
                       const Vector3d& p_W, const Vector3d& v_W, const Vector3d& u_W,
@@ -492,8 +490,6 @@ Targets AdvanceWalking(const Context& context, GaitMemory& memory) {
 }
 
 namespace {
-
-using Eigen::Vector3d;
 
 /// The foot is over its place after this part of the swing; late, it comes down at this rate.
 constexpr double kSwingArrives = 0.9;

@@ -23,8 +23,9 @@ struct Context {
   double TimeIn(const GaitMemory& memory) const { return body.time_s - memory.phase_start_s; }
 };
 
-/// The four gaits of section 5 as state machines over a floating body: command and body state in,
-/// joint efforts out.
+// The four gaits of section 5 as state machines over a floating body: command and body state in,
+// joint efforts out.
+
 /// Memory of a character that stands on both feet with this heading, stepping in place.
 GaitMemory Standing(double heading_rad, double time_s);
 
@@ -43,8 +44,9 @@ const char* PhaseName(const GaitMemory& memory);
 stream::GaitState Describe(const biped::BodyState& body, const biped::GaitCommand& command,
                            const GaitMemory& memory);
 
-/// Running and jumping towards a pit: finds it on the track, measures the hops, and turns the plan
-/// (pits.h) into what the gaits remember.
+// Running and jumping towards a pit: finds it on the track, measures the hops, and turns the plan
+// (pits.h) into what the gaits remember.
+
 /// At lift-off and touchdown: remembers the pit ahead, if any.
 void LookForPit(const Context& context, GaitMemory& memory);
 
@@ -82,8 +84,9 @@ Eigen::Vector3d LegsMomentum(const biped::BodyState& body, const biped::BipedPar
 /// Angular momentum of the whole body about its COM, kg m2/s, world. In flight it does not change.
 Eigen::Vector3d AngularMomentum(const biped::BodyState& body, const biped::BipedParameters& biped);
 
-/// Walking and stepping at the pit that LookForPit found: over a narrow one by its
-/// footholds; before a wide one they stop.
+// Walking and stepping at the pit that LookForPit found: over a narrow one by its
+// footholds; before a wide one they stop.
+
 /// The coming foothold at a pit, seen from the supporting foot; nothing when it needs no plan.
 /// `natural_m` is the foothold without a pit.
 std::optional<WalkPlan> StepAtPit(const Context& context, const GaitMemory& memory,

@@ -230,8 +230,6 @@ void CountStep(const Context& context, GaitMemory& memory) {
 
 namespace {
 
-using Eigen::Vector3d;
-
 /// The gap is asked for in full from this bank on.
 constexpr double kFullBankRad = 0.1;
 /// It is given up between this tilt of the body, which runs in curves do not reach, and twice that.

@@ -72,9 +72,10 @@ double AnticipatedLean(const Context& context, const GaitMemory& memory);
 /// How much lower the hips of a walk go, m, that waits for its Fall to jump.
 double AnticipatedCrouch(const Context& context, const GaitMemory& memory);
 
-/// Steps at the user's own rate, as far as a gait stays robust: subjects of the paper missed "a
-/// tight coupling between running speed and stepping speed". A command without cadence leaves each
-/// gait its own.
+// Steps at the user's own rate, as far as a gait stays robust: subjects of the paper missed "a
+// tight coupling between running speed and stepping speed". A command without cadence leaves each
+// gait its own.
+
 /// Rise and Fall of the present step, s. Equation (1) follows it, so the speed stays.
 double SwingTime(const Context& context, const GaitMemory& memory);
 /// The same for the step that begins, by the command.

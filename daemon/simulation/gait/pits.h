@@ -75,15 +75,16 @@ PitPlan PlanPit(const PitAhead& pit, const Hop& first, const Hop& next, const Pi
 double ShiftOffPit(const PitAhead& pit, const PitLimits& limits, double back_m, double ahead_m,
                    bool leaping);
 
-/// The footholds of a walk up to a pit and over it. Distances are along the heading, from the
-/// supporting foot.
-///
-/// The capture point xi = x + v / w of a linear inverted pendulum moves away from the supporting
-/// foot p by the factor e^(w T) in a step of time T. Footholds p_1, p_2, ... are reached, and the
-/// walk goes on at its speed, when the first one lies at
-///   p_1 = xi - sum_j d^j (p_(j+1) - p_j),   d = e^(-w T),
-/// which with equal strides v_d T is equation (1). A longer stride is thus prepared by the
-/// footholds before it.
+// The footholds of a walk up to a pit and over it. Distances are along the heading, from the
+// supporting foot.
+//
+// The capture point xi = x + v / w of a linear inverted pendulum moves away from the supporting
+// foot p by the factor e^(w T) in a step of time T. Footholds p_1, p_2, ... are reached, and the
+// walk goes on at its speed, when the first one lies at
+//   p_1 = xi - sum_j d^j (p_(j+1) - p_j),   d = e^(-w T),
+// which with equal strides v_d T is equation (1). A longer stride is thus prepared by the
+// footholds before it.
+
 /// The walk as it goes on when nothing lies ahead.
 struct WalkAhead {
   double capture_m = 0;  ///< xi at the coming touchdown.

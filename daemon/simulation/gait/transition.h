@@ -49,17 +49,18 @@ Eigen::Vector3d Cleared(const Context& context, const GaitMemory& memory, int le
 Eigen::Vector3d OffGround(const Context& context, const GaitMemory& memory, int leg,
                           const Eigen::Vector3d& r_HF_W_m);
 
-/// Changes of gait: Figure 9 and "Gait Transitions" in section 5 of the paper.
-///
-/// | from, to           | energy                                   | the controller changes     |
-/// |--------------------|------------------------------------------|----------------------------|
-/// | step <-> walk      | none                                     | at once                    |
-/// | step, walk -> run  | Fall extends the supporting leg          | when it leaves the ground  |
-/// | step, walk -> jump | the same                                 | the same                   |
-/// | run -> jump        | a preparatory step, foot under the COM   | when its leg lifts off     |
-/// | run -> walk, step  | run slows down; a foot far ahead absorbs | in Compression, to Rise    |
-/// | jump -> step, walk | jump slows down; both legs absorb        | to Double Support, by step |
-/// | jump -> run        | not in the paper: by stepping, walking   |                            |
+// Changes of gait: Figure 9 and "Gait Transitions" in section 5 of the paper.
+//
+// | from, to           | energy                                   | the controller changes     |
+// |--------------------|------------------------------------------|----------------------------|
+// | step <-> walk      | none                                     | at once                    |
+// | step, walk -> run  | Fall extends the supporting leg          | when it leaves the ground  |
+// | step, walk -> jump | the same                                 | the same                   |
+// | run -> jump        | a preparatory step, foot under the COM   | when its leg lifts off     |
+// | run -> walk, step  | run slows down; a foot far ahead absorbs | in Compression, to Rise    |
+// | jump -> step, walk | jump slows down; both legs absorb        | to Double Support, by step |
+// | jump -> run        | not in the paper: by stepping, walking   |                            |
+
 /// True where the figure has an arrow (and for staying).
 bool IsDirect(stream::Gait from, stream::Gait to);
 /// Figure 9 as a Mermaid state diagram, drawn from IsDirect.

@@ -45,8 +45,6 @@ std::optional<stream::StudyState> StudyRelay::TakeChange() {
   return study_;
 }
 
-using serving::Answer;
-
 v1::CommandResult GameRelay::OnSetGame(const transport::SessionInfo& who,
                                        const v1::SetGame& message) {
   if (leader_ != 0 && leader_ != who.session) {

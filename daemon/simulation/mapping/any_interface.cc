@@ -122,7 +122,6 @@ biped::GaitCommand LegInterface::Advance(double time_s, const Inputs& inputs) {
   return command;
 }
 
-using stream::DeviceRole;
 using stream::UserInterface;
 
 namespace {

@@ -216,10 +216,6 @@ void BoardsInterface::Describe(const Inputs& inputs, double left_share) {
 
 namespace {
 
-using stream::Activity;
-using stream::DeviceRole;
-using stream::Gait;
-
 /// The hand whose Wiimote has the stick; either one while that is not known.
 std::uint32_t HandsOf(DeviceRole role) {
   if (role != DeviceRole::kUnspecified) return stream::RoleBit(role);

@@ -67,8 +67,9 @@ LimbFeatures ToLimb(const stream::DeviceFeatures& device, bool mounted);
 /// they form. What the rig lacks is not present. Bits of `mounted_roles` are by stream::RoleBit.
 void TakeFeatures(const stream::RigFeatures& rig, std::uint32_t mounted_roles, Inputs& inputs);
 
-/// The files NAME_mapping.json: from a person's comfortable range to the character's stable one
-/// (gait paper, section 7).
+// The files NAME_mapping.json: from a person's comfortable range to the character's stable one
+// (gait paper, section 7).
+
 /// Two ends of a linear, clamped scaling.
 struct Scaling {
   double from_min = 0, from_max = 1;

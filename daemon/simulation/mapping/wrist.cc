@@ -31,7 +31,6 @@ Gait SettledGait::Advance(double time_s, Gait seen, double lasting_s) {
 namespace {
 
 using stream::Activity;
-using stream::Gait;
 
 /// Steps in a period of the limbs: walking's own two; who runs swings too fast for two.
 constexpr double kWalkStepsPerSwing = 2;

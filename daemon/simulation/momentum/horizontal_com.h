@@ -105,9 +105,10 @@ std::vector<HorizontalCom::Filter::Scalar> SmoothHorizontal(
     const HorizontalPrior& prior, double mass_kg, double step_s, double start_m,
     const std::vector<HorizontalInput>& inputs);
 
-/// The horizontal filters expect a body in place. Where a body steps, lunges or pushes off, they
-/// lag behind by more than they report, and filters of a travelling body, which also see where
-/// hands and feet have C, are better.
+// The horizontal filters expect a body in place. Where a body steps, lunges or pushes off, they
+// lag behind by more than they report, and filters of a travelling body, which also see where
+// hands and feet have C, are better.
+
 /// The prior of a body that travels, for the axis of this prior of a body in place.
 HorizontalPrior Travelling(HorizontalPrior in_place);
 /// How the pose from hands and feet alone is wrong about C of such a body.

@@ -639,8 +639,6 @@ void VerticalCom::LookAtRest(double height_m) {
   filter_.Update(h, height_m, kStandsWhiteM * kStandsWhiteM);
 }
 
-using VerticalFilter = VerticalCom::Filter;
-
 std::vector<VerticalFilter::Scalar> SmoothVertical(const VerticalConfig& config, double mass_kg,
                                                    double step_s, const VerticalInput& mean,
                                                    const std::vector<VerticalInput>& inputs) {

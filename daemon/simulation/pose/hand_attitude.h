@@ -115,9 +115,10 @@ class AttitudeFilter {
   double frozen_drift_rad_ = 0;
 };
 
-/// Arms from devices with an accelerometer and a gyroscope, in the fists (Ha, Bai & Liu 2011,
-/// section 5.2) or strapped on upper arms and forearms; docs/hands.md says where this departs from
-/// the paper.
+// Arms from devices with an accelerometer and a gyroscope, in the fists (Ha, Bai & Liu 2011,
+// section 5.2) or strapped on upper arms and forearms; docs/hands.md says where this departs from
+// the paper.
+
 /// How a device has turned since the T-pose, and what it feels.
 struct HandState {
   bool valid = false;

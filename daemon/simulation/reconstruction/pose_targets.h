@@ -176,8 +176,9 @@ class PaperMode {
   pose::FibonacciSearch solver_;
 };
 
-/// The third step: what a frame's pose is solved for. Each function adds the terms of one source;
-/// a mode calls those that it has. Places are in W until MoveOrigin.
+// The third step: what a frame's pose is solved for. Each function adds the terms of one source;
+// a mode calls those that it has. Places are in W until MoveOrigin.
+
 /// Fists where they are seen; of an arm whose hand is not seen, the arm-angle error of equation
 /// (6): three of the shoulder, one of the elbow, as directions of the elbow from the shoulder, of a
 /// point beside the upper arm, and of the fist from the elbow. Deviations are those of the inputs.

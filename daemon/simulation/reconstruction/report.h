@@ -76,8 +76,9 @@ struct Output {
   std::vector<double> joint_sd_m;  ///< Standard deviation of each joint's position, along one axis.
 };
 
-/// The fifth step: the solver's pose has the feet where they are most likely; the legs, and these
-/// alone, bring them to where they are shown.
+// The fifth step: the solver's pose has the feet where they are most likely; the legs, and these
+// alone, bring them to where they are shown.
+
 /// A pose and where it has the joints.
 struct SolvedPose {
   Eigen::VectorXd q;

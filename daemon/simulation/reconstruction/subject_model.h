@@ -281,8 +281,9 @@ class HandTrack {
 /// Tracks of the joints of a skeleton, by body::IndexOf, which are slower than hands.
 std::array<HandTrack, stream::kBodyJoints> JointTracks();
 
-/// Joints of a tracked skeleton, such as a Kinect's (pose paper, sections 5.3 and 7.3): what of
-/// them is believed, and the terms of the solver that they are.
+// Joints of a tracked skeleton, such as a Kinect's (pose paper, sections 5.3 and 7.3): what of
+// them is believed, and the terms of the solver that they are.
+
 /// Enough joints are valid to show the pose. Fewer, such as a tracked head, add to what boards and
 /// hands show.
 bool IsSkeleton(const JointInputs& joints);

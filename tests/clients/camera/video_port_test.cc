@@ -113,10 +113,6 @@ TEST(MeasureLens, RefusesTheSameViewAgainAndAgain) {
   EXPECT_THAT(report.error().message, HasSubstr("seen in 1 places"));
 }
 
-}  // namespace
-
-namespace {
-
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

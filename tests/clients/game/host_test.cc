@@ -111,10 +111,6 @@ TEST(Messages, AppendEveryPropertyOfAPiece) {
   EXPECT_TRUE(ToCommand({0.5, 0, 0, 0, true}).append_segment().pit());
 }
 
-}  // namespace
-
-namespace {
-
 using ::testing::HasSubstr;
 
 stream::GameState OneRound() {

@@ -177,12 +177,6 @@ TEST_F(AngleErrorsTest, BidsAndXdfSayIt) {
   EXPECT_THAT(Bytes(xdf->path), HasSubstr("<note>orientation_sd_rad of links"));
 }
 
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
-
 class ContentsTest : public TemporaryFolder {};
 
 TEST_F(ContentsTest, TopicsCountsRatesAndGapsAreThoseRecorded) {
@@ -295,12 +289,6 @@ TEST_F(ContentsTest, SomethingElseIsNoRecording) {
   EXPECT_EQ(ReadContents(Path("none.mcap")).error().kind, ErrorKind::kFailure);
 }
 
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
-
 class ExportBidsTest : public TemporaryFolder {
  protected:
   Result<ExportedBids> Export(const std::string& subject, bool replace = false) {
@@ -358,12 +346,7 @@ TEST_F(ExportBidsTest, RefusesALabelThatTheStandardDoesNotTake) {
   EXPECT_FALSE(std::filesystem::exists(Path("data")));
 }
 
-}  // namespace
-
-namespace {
-
 using testing::EndsWith;
-using testing::HasSubstr;
 using testing::StartsWith;
 
 class ExportCsvTest : public TemporaryFolder {};

@@ -104,10 +104,6 @@ TEST(C3dBody, ItsPlatesCarryTheFeet) {
   EXPECT_LT((corners.rowwise().maxCoeff() - Vector3d(0.2, 0.3, 0)).norm(), 1e-6);
 }
 
-}  // namespace
-
-namespace {
-
 /// A chain of three links: root, a joint 0.5 m above it, and an end another 0.5 m on.
 v1::Skeleton Chain() {
   v1::Skeleton skeleton;
@@ -380,12 +376,6 @@ TEST(ExportBodies, AFileThatIsNoneIsRefusedByName) {
   ASSERT_FALSE(exported.ok());
   EXPECT_NE(exported.error().message.find("/nowhere/walk.mcap"), std::string::npos);
 }
-
-}  // namespace
-
-namespace {
-
-using Eigen::Vector3d;
 
 TEST(ForceTable, IsReadAgainAsTheForcesOfTwoPlates) {
   std::vector<FootForces> forces(3);

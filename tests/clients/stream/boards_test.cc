@@ -161,12 +161,6 @@ TEST_F(BoardsTest, HandsAreSeenWhereTheFistsAreWithTheNoiseAskedFor) {
   EXPECT_NEAR(std::sqrt(square / (6 * kFrames)), 0.02, 0.0006);
 }
 
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
-
 TEST_F(BoardsTest, TwoBoardsAndTheTruePoseAreThereAndHandsWhenAskedFor) {
   auto plan = PlanBoards(options_, {});
   ASSERT_TRUE(plan) << plan.error().message;
@@ -329,12 +323,6 @@ TEST_F(BoardsTest, ACopyOfAWiimotesMotionBeginsAnew) {
   SimulatedDevice::WiimoteMotion first = motion, again = motion;
   EXPECT_EQ(first(0.1).specific_force_S_mps2, again(0.1).specific_force_S_mps2);
 }
-
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
 
 class InsolesTest : public testing::Test {
  protected:

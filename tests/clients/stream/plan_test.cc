@@ -72,10 +72,6 @@ TEST(PlanBuilder, IsOneDeviceInTheRoleEditor) {
   EXPECT_FALSE(PlanBuilder(false, unknown));
 }
 
-}  // namespace
-
-namespace {
-
 using testing::HasSubstr;
 
 TEST(Plan, AUserSwingsALeftAndARightWiimoteOfTheirOwnSerials) {
@@ -114,10 +110,6 @@ TEST(Plan, TheSameSeedMakesTheSameSerials) {
   ASSERT_TRUE(one && two);
   EXPECT_EQ(one->devices[0].identity().serial, two->devices[0].identity().serial);
 }
-
-}  // namespace
-
-namespace {
 
 wrists::Segment Swing(double duration_s, double frequency_hz, double phase_rad,
                       double roll_rad = 0) {
@@ -174,12 +166,7 @@ TEST(StickMotion, PressesTheButtonOnceACycleOfHandsInPhase) {
   EXPECT_FALSE(StickMotion({Swing(3, 2, kPi)}, 0.2).At(0).jump);
 }
 
-}  // namespace
-
-namespace {
-
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 TEST(Table, AHeaderAndEmptyLinesAreNoRows) {
   const auto table = ParseTable("ax,ay,az\r\n1,2,3\r\n\n-4.5, 5e-1 ,6\n", 3, "f");

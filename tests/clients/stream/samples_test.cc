@@ -104,10 +104,6 @@ TEST_F(Samples, AFolderThatCannotBeMadeIsNamed) {
   EXPECT_NE(written.error().message.find("/proc/nowhere"), std::string::npos);
 }
 
-}  // namespace
-
-namespace {
-
 using testing::HasSubstr;
 
 TEST(Script, EveryCarriedNameIsAScriptWithAnEnd) {

@@ -39,10 +39,6 @@ TEST(Fnv, OrderMatters) {
   EXPECT_NE(AddFnv(AddFnv(kFnvBasis, 1), 2), AddFnv(AddFnv(kFnvBasis, 2), 1));
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Lines, LinesEndInAnyWayAndAreCounted) {
   text::Lines lines("one\r\n\n  \ntwo", "f.txt");
   EXPECT_EQ(lines.NextFull(), "one");
@@ -78,10 +74,6 @@ TEST(Lines, QuotedWordsKeepTheirLanguageAndLoseControls) {
   EXPECT_EQ(Quoted(word + "ü"), "'" + word + "...'");
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Number, NumbersAreWholeWordsAndFinite) {
   EXPECT_EQ(text::ToNumber("-1.5e-3"), -0.0015);
   EXPECT_EQ(text::ToNumber("+2"), 2);
@@ -108,10 +100,6 @@ TEST(Number, TheShortestTextReadsBackAsTheSameNumber) {
   EXPECT_EQ(ToNumber(Shortest(1.0 / 3)), 1.0 / 3);
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Utc, IsIso8601WithTheDecimalsAskedFor) {
   constexpr std::int64_t kNs = 1'763'818'728'123'456'789;  // date -u -d @1763818728
   EXPECT_EQ(Utc(kNs), "2025-11-22T13:38:48Z");
@@ -123,10 +111,6 @@ TEST(Utc, PadsTheDecimalsAndKnowsInstantsBefore1970) {
   EXPECT_EQ(Utc(1'000'000, 6), "1970-01-01T00:00:00.001000Z");
   EXPECT_EQ(Utc(-1, 3), "1969-12-31T23:59:59.999Z");
 }
-
-}  // namespace
-
-namespace {
 
 TEST(Utf8, SequencesHaveOneToFourBytes) {
   EXPECT_EQ(SequenceLength("a", 0), 1u);

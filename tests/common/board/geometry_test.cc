@@ -55,10 +55,6 @@ TEST(BoardGeometry, SensorsStandAtHalfTheirDistances) {
   EXPECT_NEAR(places[2].y(), 2 + 0.866 / 2, 1e-12);
 }
 
-}  // namespace
-
-namespace {
-
 using Feet = std::array<Corners, LoadPlayer::kBoards>;
 
 constexpr double kStepS = 1 / 120.0;
@@ -166,10 +162,6 @@ TEST(ImpulseMeter, AddsUpTrapezoidsAndNothingAcrossAGap) {
   EXPECT_NEAR(meter.impulse().impulse_ns[3], 0.4, 1e-9);
   EXPECT_DOUBLE_EQ(meter.impulse().sampled_s, 7);
 }
-
-}  // namespace
-
-namespace {
 
 TEST(Plate, CentreOfPressureIsUnderTheLoadedCorner) {
   Plate plate;

@@ -108,10 +108,6 @@ TEST(Body, RefusesWhatIsNoPerson) {
   EXPECT_THAT(MakeBody(flat, person).error().message, HasSubstr("in one place"));
 }
 
-}  // namespace
-
-namespace {
-
 class EverySex : public testing::TestWithParam<Sex> {};
 
 TEST_P(EverySex, HasFiftySixDegreesOfFreedomAndTheHeightAskedFor) {

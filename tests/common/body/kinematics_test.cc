@@ -119,7 +119,6 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 namespace footing::body {
 namespace {
 
-using test::RandomVector;
 using test::StandardBody;
 
 /// Point masses that have the same mass, centre and inertia as a rigid body: six, two along each
@@ -291,10 +290,6 @@ TEST(Momentum, NothingAllocatesOnceTheRoomIsMade) {
   Clamp(body.skeleton, q);
   EXPECT_EQ(allocations - before, 0);
 }
-
-}  // namespace
-
-namespace {
 
 Body Person() { return MakeBody(StandardPerson(1.8), {}).value(); }
 

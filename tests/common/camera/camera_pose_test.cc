@@ -179,10 +179,6 @@ TEST(MeanAtRest, TakesNoiseForRest) {
     EXPECT_TRUE(MeanAtRest(Frames(static_cast<int>(kLeastFrames), 0, seed))) << seed;
 }
 
-}  // namespace
-
-namespace {
-
 const Eigen::Isometry3d kFirst = LookingAtTheBoards({2.1, 0.4, 1.3});
 const Eigen::Isometry3d kLater = LookingAtTheBoards({1.8, -0.5, 0.9});
 
@@ -224,13 +220,6 @@ TEST(Samples, WhatWasNotSeenOrHasNoFrameStays) {
   EXPECT_FALSE(InTrackerFrame(skeleton));
   EXPECT_EQ(Recalibrated(skeleton, kLater).position_m, skeleton.position_m);
 }
-
-}  // namespace
-
-namespace {
-
-using Eigen::Vector3d;
-using testing::HasSubstr;
 
 const Vector3d kOrigin(0.1, 0, 1.2);
 

@@ -223,8 +223,6 @@ TEST(FinderHonesty, ANearSphereInACornerIsNotDrawnTowardsTheMiddle) {
 // finder.
 namespace {
 
-namespace camera = virtual_camera;
-
 camera::Scene SceneWith(const Eigen::Vector3d& p_C_m) {
   camera::Scene scene;
   scene.balls.resize(1);
@@ -366,8 +364,6 @@ TEST_F(FinderScenes, ADullDiscOfItsHueIsNoSphere) {
 
 // The finder on frames of a renderer that shares no code with it.
 namespace {
-
-namespace camera = virtual_camera;
 
 const Eigen::Vector3d kMagenta(170, 40, 150), kCyan(40, 170, 160);
 

@@ -60,10 +60,6 @@ TEST(Mounting, EveryWornRoleHasAPicture) {
   EXPECT_EQ(Picture(stream::DeviceRole::kLeftBoard), "");
 }
 
-}  // namespace
-
-namespace {
-
 const stream::SetupItem* Find(const std::vector<stream::SetupItem>& items, const std::string& name,
                               const std::string& serial = "") {
   for (const auto& item : items) {

@@ -91,10 +91,6 @@ TEST(Model, FindsATensorByNameAndShapeOnly) {
   EXPECT_THAT(Find(model, "c", {1}, "m.fmodel").error().message, HasSubstr("c is missing"));
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Sha256, IsWhatTheStandardsExamplesSay) {
   // FIPS 180-2, appendix B, and NIST's example of no bytes.
   EXPECT_EQ(Hex(Sha256("")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");

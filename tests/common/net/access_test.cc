@@ -131,10 +131,6 @@ TEST(Access, WithoutEncryptionThereMustBeAToken) {
   EXPECT_TRUE(settings.Check().ok());
 }
 
-}  // namespace
-
-namespace {
-
 constexpr char kToken[] = "0123456789abcdef";
 constexpr char kViewToken[] = "view-0123456789abcdef";
 

@@ -318,10 +318,6 @@ TEST(Admission, NamesAreShortAndPrintable) {
   EXPECT_EQ(admitted.client_name, "a?[2J?" + std::string(58, 'b'));
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::uint32_t kRetained = 16;
 constexpr std::uint32_t kStream = 17;
 

@@ -420,11 +420,6 @@ TEST_F(FairShareTest, TheWelcomeNamesTheLimits) {
   EXPECT_EQ(limits.max_message_burst(), 100u);
 }
 
-}  // namespace
-
-namespace {
-
-namespace asio = boost::asio;
 using Raw = asio::local::stream_protocol::socket;
 
 class FramedConnectionTest : public IoFixture {
@@ -554,10 +549,6 @@ TEST_F(FramedConnectionTest, AfterCloseNoHandlerIsCalled) {
   EXPECT_FALSE(closed_.has_value());
 }
 
-}  // namespace
-
-namespace {
-
 /// Frames that come out when `bytes` are fed in pieces of `piece` bytes.
 struct Outcome {
   std::vector<std::string> frames;
@@ -631,10 +622,6 @@ TEST(Framing, AReceiverThatStopsGetsNoFurtherFrame) {
                   .ok());
   EXPECT_EQ(frames, 1);
 }
-
-}  // namespace
-
-namespace {
 
 std::string TickOf(int samples) {
   v1::Envelope message;

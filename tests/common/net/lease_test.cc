@@ -74,12 +74,6 @@ TEST(LeaseControl, SaysWhatHappensToTheLease) {
               StartsWith("release_lease: nobody has the lease"));
 }
 
-}  // namespace
-
-namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;

@@ -68,10 +68,6 @@ TEST(ProcessUsage, IsThatOfAProcessThatRuns) {
   EXPECT_LT(usage.open_descriptors, 100u);
 }
 
-}  // namespace
-
-namespace {
-
 using transport::ChannelBytes;
 
 constexpr std::int64_t kTickNs = 10'000'000;

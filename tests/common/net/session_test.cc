@@ -66,10 +66,6 @@ TEST(CommandContent, LettersOfAllLanguagesAndTablesOfSeveralLinesAreTaken) {
   EXPECT_EQ(ProblemOf([](auto&) {}), "");
 }
 
-}  // namespace
-
-namespace {
-
 /// How many descriptors this process's table can hold now.
 int TableSize() {
   std::ifstream status("/proc/self/status");

@@ -36,10 +36,6 @@ TEST(Fingerprint, AnythingElseIsNone) {
   EXPECT_FALSE(ParseFingerprint(std::string(64, 'g')));
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Identity, IsMadeOnceWithItsFoldersAndForItsOwnerAlone) {
   const test::TemporaryFolder folder;
   const std::string path = folder.Path("state/footing/identity.pem");

@@ -190,10 +190,6 @@ TEST_F(ServerAccess, BeyondThisHostTheTokenIsNotSentInClearUnlessAllowed) {
   EXPECT_TRUE(hello("tcp:192.0.2.5:7450").ok()) << "there is nothing to hide";
 }
 
-}  // namespace
-
-namespace {
-
 using TlsTest = TlsFixture;
 
 TEST_F(TlsTest, TheFirstCertificateIsRememberedAndTheTokenLetsIn) {

@@ -58,10 +58,6 @@ TEST(McapCut, BytesBehindTheEndAreAProblem) {
   EXPECT_EQ(seen.messages.size(), 3u);
 }
 
-}  // namespace
-
-namespace {
-
 using testing::HasSubstr;
 
 /// A file of four chunks of 6, 6, 6 and 5 messages.

@@ -38,10 +38,6 @@ TEST(RecordedServerTest, TimesBeyondTheLimitAreLeftOut) {
   EXPECT_FALSE(server.clock_measured);
 }
 
-}  // namespace
-
-namespace {
-
 TEST(ShiftStamps, MovesEveryInstantOfTheServersClockAndNothingElse) {
   v1::Tick tick;
   tick.set_host_ns(100);
@@ -81,10 +77,6 @@ TEST(ShiftStamps, LeavesWhatNoClockComesTo) {
   EXPECT_EQ(tick.motion().samples(0).received_ns(), -kEnd);
   EXPECT_EQ(tick.motion().samples(0).sampled_ns(), 1080);
 }
-
-}  // namespace
-
-namespace {
 
 TEST(TickPlayerTest, AfterAStopNothingIsPlayedThatWasDue) {
   boost::asio::io_context io;

@@ -112,11 +112,6 @@ TEST(OutputFile, LeavesAloneWhatTookItsPlace) {
   EXPECT_EQ(Contents(path), "another's");
 }
 
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
 using testing::Not;
 
 TEST_F(Recording, MessagesComeBackThroughTheSchemaInside) {

@@ -275,8 +275,6 @@ TEST(Analysis, RefusesMethodsThatATestDoesNotHave) {
 // Data that leave a formula without a denominator: every figure stays a number in its range.
 namespace {
 
-using nlohmann::ordered_json;
-
 /// Finite, and p within [0, 1]; an open end of an interval is null.
 void ExpectNumbers(const ordered_json& value, const std::string& name) {
   if (value.is_object() || value.is_array()) {
@@ -437,10 +435,6 @@ TEST(DegenerateData, OfManyGroups) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const double kEqualGroups = 1 / std::numbers::sqrt2;
 
@@ -551,10 +545,6 @@ TEST(MaxQuantile, AgreesWithTheTableOfCriticalValues) {
                 test::NumberIn(row, "one_sided"), 1e-10);
   }
 }
-
-}  // namespace
-
-namespace {
 
 using testing::ElementsAre;
 

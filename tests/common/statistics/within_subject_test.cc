@@ -131,10 +131,6 @@ TEST(CliffsDelta, IntervalsHoldTheTruthAboutAsOftenAsTheyState) {
   EXPECT_NEAR(held / static_cast<double>(kSamples), 0.95, 0.02);
 }
 
-}  // namespace
-
-namespace {
-
 Relabelling Using(Method method) {
   Relabelling relabelling;
   relabelling.method = method;

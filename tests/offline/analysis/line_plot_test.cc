@@ -34,10 +34,6 @@ TEST(LinePlot, FitsAxesToCurvesThatGoBelowZero) {
   EXPECT_NE(svg.find("points='340,202 '"), std::string::npos) << svg;
 }
 
-}  // namespace
-
-namespace {
-
 TEST(PlanPlot, DrawsAreasAndLinesAtFivePixelsAMetreWithYUp) {
   const std::string svg = PlanPlot(
       "a & b",
@@ -66,10 +62,6 @@ TEST(PlanPlot, LeavesOutWhatIsNotFinite) {
   EXPECT_EQ(svg.find("inf"), std::string::npos);
   EXPECT_EQ(svg.find("polygon"), std::string::npos);
 }
-
-}  // namespace
-
-namespace {
 
 TEST(StickPlot, DrawsAllPanelsAtOneScaleOnOneGround) {
   // The tallest panel is 2 high: 280 of height over 2; both feet at 340.

@@ -77,10 +77,6 @@ TEST(Board, WeightIsNotMovedByStepsOnAndOff) {
   EXPECT_NEAR(FindStanding(samples, {}).weight_n, 600, 1e-9);
 }
 
-}  // namespace
-
-namespace {
-
 /// A circle of radius 10 mm at 0.25 Hz over 20 s, at uneven times: 60 Hz with every interval
 /// between 0.3 and 1.7 of the mean one (a fixed sequence, fractions of multiples of the golden
 /// ratio).
@@ -136,10 +132,6 @@ TEST(Resample, OneSampleAndEqualTimesGiveThatSample) {
   const std::vector<CopSample> two = {{3, 1, 2}, {3, 1, 2}};
   EXPECT_EQ(Resample(two, 100, 0.02)[0].y_m, 2);
 }
-
-}  // namespace
-
-namespace {
 
 using Signal = std::function<CopSample(double time_s)>;
 

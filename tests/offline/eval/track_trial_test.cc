@@ -74,10 +74,6 @@ TEST(JumpDelays, HaveTheSpreadOfWhatWasPooled) {
   EXPECT_NEAR(delays.to_take_off().sd_s(), 0, 0.011);
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kDelayS = 1;
 
 /// Times of gestures, of commands and of falls, s.
@@ -233,12 +229,6 @@ INSTANTIATE_TEST_SUITE_P(Gaits, TurnByFeet,
                          testing::Values(std::pair{Gait::kWalk, 0.5}, std::pair{Gait::kWalk, 1.0},
                                          std::pair{Gait::kRun, 0.0}, std::pair{Gait::kRun, 0.5},
                                          std::pair{Gait::kRun, 1.0}));
-
-}  // namespace
-
-namespace {
-
-using stream::Gait;
 
 constexpr auto kArm = stream::UserInterface::kArm;
 constexpr double kChangeS = 3, kEndS = 9;

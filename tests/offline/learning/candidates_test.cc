@@ -118,10 +118,6 @@ TEST(Candidates, CovarianceChangesNeitherWithTheErrorsSizeNorWithRowsRepeated) {
   EXPECT_TRUE(once.weights.isApprox(scaled.weights, 1e-6));
 }
 
-}  // namespace
-
-namespace {
-
 Eigen::MatrixXd One(double value) { return Eigen::MatrixXd::Constant(1, 1, value); }
 
 TEST(Quickprop, JumpsToTheLowestPointOfAParabola) {
@@ -159,10 +155,6 @@ TEST(Quickprop, DecayPullsAWeightToZero) {
   quickprop.Step(One(0), w);
   EXPECT_DOUBLE_EQ(w(0), 8 - 0.1 * 0.5 * 8);
 }
-
-}  // namespace
-
-namespace {
 
 TEST(SigmoidOutputs, LearnWhatALineDivides) {
   Eigen::MatrixXd units(5, 3);

@@ -139,10 +139,6 @@ TEST(Aligned, UnwrapsAngles) {
   EXPECT_NEAR(aligned.q(elbow, 119) - aligned.q(elbow, 0), 11.9, 1e-9);
 }
 
-}  // namespace
-
-namespace {
-
 LoadClip HorizontalComNumbered(int frames) {
   LoadClip clip(static_cast<std::size_t>(frames));
   for (int t = 0; t < frames; ++t) {

@@ -53,10 +53,6 @@ TEST(Scaling, MakesMeanZeroAndDeviationOneButOfAConstant) {
   EXPECT_TRUE(scaled.allFinite());
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Mlp, GradientIsThatOfFiniteDifferences) {
   const Examples examples = Curved(40, 0, 1);
   MlpOptions options;

@@ -48,10 +48,6 @@ TEST(ArmRegression, FindsALinearMapAndTheCovarianceOfWhatIsLeft) {
   EXPECT_LT((read->Predict(features) - told).norm(), 1e-4);
 }
 
-}  // namespace
-
-namespace {
-
 /// Root position and two angles that move as one, and one of their own.
 Eigen::MatrixXd Poses(int count) {
   noise::Random random(1);
@@ -98,10 +94,6 @@ TEST(MakeBasis, SaysInItsTensorsWhichColumnIsWhichDof) {
   EXPECT_EQ((*components)->labels, kDofs);
   EXPECT_FLOAT_EQ((*components)->values[6 * 1 + 5], static_cast<float>(basis.components(1, 5)));
 }
-
-}  // namespace
-
-namespace {
 
 constexpr int kDof = 6;
 constexpr RandomWaves kWaves{.count = 40};

@@ -65,10 +65,6 @@ TEST(FindStomps, WhereNothingWasMeasuredThereIsNone) {
   EXPECT_TRUE(FindStomps(trace).empty());
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kTimeAlignmentWeightN = 700;
 
 /// Somebody who bends the knees without a rule, steps from foot to foot and stomps: forces at any

@@ -86,10 +86,6 @@ TEST(ForceCom, PassesOverFramesInTheAir) {
   EXPECT_TRUE(ComByForce(squat.course, height_m).allFinite());
 }
 
-}  // namespace
-
-namespace {
-
 namespace sensors = virtual_sensors;
 
 constexpr double kMassKg = 75;

@@ -139,10 +139,6 @@ TEST(ParseActivities, SaysTheLineThatIsWrong) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 using body::Landmark;
 
 /// Frames of somebody on both feet; the first one is in the T-pose.
@@ -204,10 +200,6 @@ TEST(DeepestCrouch, IsLookedForFromTheGivenFrameOn) {
   stage.Squat(stage.Add(), 60);
   EXPECT_EQ(DeepestCrouch(stage.run, 2).frame, 2u);
 }
-
-}  // namespace
-
-namespace {
 
 PoseRun RunOf(const Settings& settings) {
   return RunPose(Standing(4), settings, "standing").value();

@@ -63,10 +63,6 @@ TEST(KeptRun, RefusesDamagedText) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 constexpr Task kWalk{stream::Gait::kWalk, 1.0};
 
 TrialResult AsWanted(const Task& task) {
@@ -159,10 +155,6 @@ TEST(Objective, ChargesARunThatTakesLongToWalk) {
 TEST(Objective, DoesNotChargeWhatWasNeverSeen) {
   EXPECT_DOUBLE_EQ(CostOf(kWalk, TrialResult{}).total(), 0);
 }
-
-}  // namespace
-
-namespace {
 
 using Eigen::VectorXd;
 

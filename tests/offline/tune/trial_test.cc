@@ -76,10 +76,6 @@ TEST(GaitMeter, KeepsTheLeastGapBetweenTheLegs) {
   EXPECT_NEAR(result.leg_gap_m, 0.06, 1e-12);
 }
 
-}  // namespace
-
-namespace {
-
 const Task kTrialWalk{stream::Gait::kWalk, 0.8};
 
 Team NewTeam(int threads) {

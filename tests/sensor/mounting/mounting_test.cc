@@ -132,12 +132,6 @@ TEST(Mounting, RotatingMovesTheMarkOfAClippedAxis) {
   EXPECT_EQ(rotated.clipped_axes, 1u);
 }
 
-}  // namespace
-
-namespace {
-
-using stream::DeviceRole;
-
 class SlipTest : public testing::Test {
  protected:
   /// `seconds` of a force of 1 g that leans by `lean_deg` to the side, plus a swing.

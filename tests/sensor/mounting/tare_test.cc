@@ -58,10 +58,6 @@ TEST_F(DisplacementTest, APauseProvesNothing) {
   EXPECT_FALSE(Hold({-7.5, -7.5, -7.5, -7.5}, 0.3));
 }
 
-}  // namespace
-
-namespace {
-
 /// 2 s at 80 samples a second of a board that carries `total_n(t)`, spread unevenly, with noise.
 template <typename Load>
 std::vector<TareSample> Samples(Load total_n, double rate_hz = 80) {

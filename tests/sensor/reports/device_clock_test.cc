@@ -180,10 +180,6 @@ TEST_P(EverySeed, RepeatsOfASlowlyMovingSensorCostNothing) {
   ExpectGood(Follow(virtual_devices::BoardLink(LinkQuality::kGood, GetParam()), course));
 }
 
-}  // namespace
-
-namespace {
-
 double Sd(const std::vector<double>& values) {
   double mean = 0, square = 0;
   for (const double value : values) mean += value / static_cast<double>(values.size());
@@ -329,10 +325,6 @@ TEST(DeviceClock, StartsAnewAfterAPause) {
   for (int i = 0; i < 100; ++i) clock.Advance(i * std::int64_t{10'000'000});
   EXPECT_EQ(clock.Advance(30'000'000'000), 30'000'000'000);
 }
-
-}  // namespace
-
-namespace {
 
 TEST(LinkStatistics, SteadyReportsHaveTheirRateAndNoJitter) {
   LinkStatistics statistics(0.01);

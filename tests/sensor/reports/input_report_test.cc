@@ -67,10 +67,6 @@ TEST(Camera, ARowBelowThePictureIsNotSeen) {
   EXPECT_EQ(DecodeCamera(camera).size(), 1u);
 }
 
-}  // namespace
-
-namespace {
-
 using Six = std::vector<std::uint8_t>;
 using Axes = std::array<std::uint16_t, 3>;
 
@@ -201,10 +197,6 @@ TEST(MotionPlus, TellsItsPacketsFromItsChildsAndFromRubbish) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 using Bytes6 = std::vector<std::uint8_t>;
 
 TEST(Extension, IsKnownByItsIdentityWhateverTheFirstByte) {
@@ -254,10 +246,6 @@ TEST(Extension, BoardBatteryRisesFromEmptyToFull) {
               BoardBatteryFraction(static_cast<std::uint8_t>(raw - 1)));
   }
 }
-
-}  // namespace
-
-namespace {
 
 using Report = std::vector<std::uint8_t>;
 
@@ -426,10 +414,6 @@ TEST(InputReport, BatteryIsBetweenEmptyAndFull) {
   EXPECT_DOUBLE_EQ(BatteryFraction(0xd5), 1);
 }
 
-}  // namespace
-
-namespace {
-
 using InterleaverReport = std::vector<std::uint8_t>;
 
 /// A half with buttons b0 b1, an acceleration byte and 18 camera bytes that count up.
@@ -524,10 +508,6 @@ TEST(ShortForms, OfEveryDataReportCarryButtonsOnly) {
     EXPECT_TRUE(data.camera().empty());
   }
 }
-
-}  // namespace
-
-namespace {
 
 TEST(RandomBytes, DecodeToSomethingWithinItsBounds) {
   std::mt19937 random(1);

@@ -64,10 +64,6 @@ TEST(MemoryRead, AsksForWhatIsMissing) {
   EXPECT_EQ(read.Request(), ReadMemory(Space::kEeprom, 0x0016, 20));
 }
 
-}  // namespace
-
-namespace {
-
 TEST(OutputReport, BytesAreThoseOfTheProtocol) {
   EXPECT_EQ(RumbleOnly(), (OutputReport{0x10, 0x00}));
   EXPECT_EQ(SetLeds(0x5), (OutputReport{0x11, 0x50}));

@@ -226,10 +226,6 @@ TEST(GoldenVectors, ErrorTwoIsARefusalAndNoData) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 const Eigen::Vector3d kRest(0, 0, -kStandardGravityMps2);
 const Eigen::Vector3d kBias(0.05, -0.12, 0.2);
 constexpr std::int64_t kStepNs = 10'000'000;
@@ -312,12 +308,6 @@ TEST(GyroscopeBias, NeverTakesWhatIsNoNumber) {
   EXPECT_TRUE(rig.bias.bias_radps().allFinite());
 }
 
-}  // namespace
-
-namespace {
-
-using stream::CalibrationOrigin;
-using testing::HasSubstr;
 using MotionPlusBlock = std::vector<std::uint8_t>;
 
 // Four real units: two of Dolphin's old sources, two of a thread of the WiiBrew forum (2009).
@@ -434,12 +424,6 @@ TEST(MotionPlus, TellsTheEndOfItsRange) {
   EXPECT_TRUE(Calibrate({}, CountsOf16(0x8000, 0x8000, 0, false)).clipped);
 }
 
-}  // namespace
-
-namespace {
-
-using stream::CalibrationOrigin;
-using testing::HasSubstr;
 using NunchukBlock = std::vector<std::uint8_t>;
 
 constexpr double kNunchukG = kStandardGravityMps2;
@@ -561,7 +545,6 @@ TEST(Nunchuk, TellsClippedAxes) {
 // apart from each other, with calibrations of real units and many drawn ones.
 namespace {
 
-using stream::CalibrationOrigin;
 using virtual_devices::Report;
 
 constexpr double kRoundTripG = kStandardGravityMps2;

@@ -82,12 +82,6 @@ TEST(CommandLine, ReadAgainAnErrorIsReturnedAndNothingIsPrinted) {
   EXPECT_THAT(again.error().message, HasSubstr("unknown key \"stale_afer_s\""));
 }
 
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
-
 stream::HandFrame Fist(double x_m) {
   stream::HandFrame frame;
   frame.points = {{stream::DeviceRole::kLeftHand, {x_m, 0.3, 1.2}, {0.01, 0.01, 0.01}, 1}};
@@ -236,10 +230,6 @@ TEST(HubHands, ChannelsCarryThemInTheTicksFields) {
   for (const auto& channel : Channels()) names.push_back(channel.name);
   EXPECT_THAT(names, testing::IsSupersetOf({"hands", "reference"}));
 }
-
-}  // namespace
-
-namespace {
 
 using ::testing::ElementsAre;
 

@@ -75,10 +75,6 @@ TEST(SetupJson, CalibrationBytesAreWholeLowerCaseHex) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 namespace fs = std::filesystem;
 
 class SetupTest : public testing::Test {

@@ -80,10 +80,6 @@ TEST(Biped, RefusesAFileWithAWrongOrMissingOrUnknownKey) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 using stream::Gait;
 
 TEST(Limits, KeepCommandsInTheStableRange) {

@@ -56,10 +56,6 @@ TEST(GroundBox, BeginsAStepInATurnWhereTheTrackHasIt) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// 5 m level, 3 m raised by 0.1, 4 m uphill at 5 degrees, a pit of 1 m, 2 m behind it.
 stream::Track Mixed() {
   Result<stream::Track> track = ParseTrack(

@@ -109,10 +109,6 @@ TEST(Append, NeedsATrackThatIsMadeForIt) {
   EXPECT_NE(Why(track, {}).find("build"), std::string::npos);
 }
 
-}  // namespace
-
-namespace {
-
 stream::Track Endless() {
   return ParseTrack(test::DataFile("tracks/endless.json"), "endless").value();
 }
@@ -210,10 +206,6 @@ TEST(Course, IsTheDirectionOfTheLastTenMetres) {
   EXPECT_TRUE(course.allFinite());
 }
 
-}  // namespace
-
-namespace {
-
 /// Why a track of these segments, with these further keys, is refused; empty when it is not.
 std::string Refusal(const std::string& segments, const std::string& keys = "") {
   const auto track =
@@ -293,10 +285,6 @@ TEST(TrackFile, RefusesNumbersOutOfRangeByName) {
     EXPECT_NE(track.error().message.find("bad.json"), std::string::npos);
   }
 }
-
-}  // namespace
-
-namespace {
 
 constexpr const char* kHills = R"({"version": 1, "name": "hills", "segments": [
   {"length_m": 10}, {"length_m": 10, "slope_deg": 5}, {"length_m": 2, "pit": true},

@@ -38,10 +38,6 @@ TEST(CascadeNetwork, EvaluatesWithoutAllocating) {
   EXPECT_EQ(test::Allocations(), before);
 }
 
-}  // namespace
-
-namespace {
-
 using testing::HasSubstr;
 
 CascadeNetwork Example(std::size_t hidden, float first_weight) {
@@ -99,12 +95,6 @@ TEST(CascadeModel, WithSizesThatAreNoSizesIsRefused) {
     }
   }
 }
-
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
 
 /// Two inputs, two hidden units, two outputs, every weight another number.
 NetworkWeights Example() {

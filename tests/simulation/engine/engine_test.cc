@@ -161,12 +161,7 @@ TEST(Engine, RefusesAWrongFileByName) {
   EXPECT_NE(engine.error().message.find("biped.json"), std::string::npos);
 }
 
-}  // namespace
-
-namespace {
-
 using stream::FailureCause;
-using stream::Gait;
 
 GaitEngine EngineOn(const std::string& track) {
   EngineTexts texts = Texts();

@@ -37,10 +37,6 @@ TEST(Engine, AllocatesNothingAfterItsStart) {
   EXPECT_EQ(engine.Output().gait.falls, 1u);
 }
 
-}  // namespace
-
-namespace {
-
 using stream::Gait;
 
 GaitEngine EndlessEngine() {
@@ -92,12 +88,6 @@ TEST(EndlessTrack, ARestoredStateContinuesTheSameTrack) {
   EXPECT_EQ(second.track().segments.back().start_m, first.track().segments.back().start_m);
   EXPECT_EQ(second.Output().trial.distance_m, first.Output().trial.distance_m);
 }
-
-}  // namespace
-
-namespace {
-
-using stream::Gait;
 
 struct Case {
   biped::GaitCommand command;
@@ -250,11 +240,6 @@ TEST(GaitChange, JumpingToRunningGoesByStepThenWalk) {
   EXPECT_EQ(seen, (std::vector{Gait::kJump, Gait::kStep, Gait::kWalk, Gait::kRun}));
 }
 
-}  // namespace
-
-namespace {
-
-using stream::Gait;
 using stream::UserInterface;
 
 GaitEngine NewEngineOf(UserInterface interface) {
@@ -432,12 +417,6 @@ TEST(Interfaces, SavingAndRestoringRepeatsBitForBit) {
   }
 }
 
-}  // namespace
-
-namespace {
-
-using stream::Gait;
-
 /// The first flight of a jump.
 struct Leap {
   double flight_s = 0;
@@ -503,12 +482,7 @@ TEST_P(LeapOutOfARun, LandsTurnedByLessTheFasterItIs) {
 
 INSTANTIATE_TEST_SUITE_P(Speeds, LeapOutOfARun, testing::Values(1.5, 2.5, 3.8));
 
-}  // namespace
-
-namespace {
-
 using stream::FailureCause;
-using stream::Gait;
 using stream::TaskPhase;
 using stream::TrialPhase;
 

@@ -87,10 +87,6 @@ TEST(FootingSimConfig, UnknownValuesListWhatThereIs) {
   EXPECT_THAT(message([](Config& c) { c.pose.lag_ms = 50; }), HasSubstr("0, 100, 200"));
 }
 
-}  // namespace
-
-namespace {
-
 using ::testing::ElementsAre;
 
 TEST(Reload, TakesTheLimitsOfSessionsAndSaysWhatNeedsARestart) {
@@ -106,12 +102,6 @@ TEST(Reload, TakesTheLimitsOfSessionsAndSaysWhatNeedsARestart) {
                                  "config: takes effect after a restart: engine \"gait\" -> "
                                  "\"pose\""));
 }
-
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
 
 std::string Why(const Config& config) {
   const auto checked = CheckService(config);

@@ -52,10 +52,6 @@ TEST(AngularMomentum, StaysInFlightWhateverTheLegsDo) {
   EXPECT_GT(std::fabs(world.Observe().joint_position[1]), 0.1);
 }
 
-}  // namespace
-
-namespace {
-
 using stream::Gait;
 
 /// Steps a second from 4 s after the command on, over 6 s; 0 after a fall.
@@ -107,10 +103,6 @@ TEST(Cadence, BeyondTheRobustRangeItIsFollowedAsFarAsThat) {
       1 / (gains.cadence.swing_time_min_s + gains.walking.double_support_time_s);
   EXPECT_NEAR(MeasuredCadence(hasty), fastest_hz, 0.05 * fastest_hz);
 }
-
-}  // namespace
-
-namespace {
 
 /// Sums what acts on the whole body and compares it with what its momentum does: a force that no
 /// contact accounts for would show, however it was applied.

@@ -87,10 +87,6 @@ TEST(Anticipation, NothingShowsOfACommandThatIsObeyed) {
   EXPECT_EQ(AnticipatedCrouch(context, scene.memory), 0);
 }
 
-}  // namespace
-
-namespace {
-
 using Eigen::Vector3d;
 
 constexpr int kIdle = biped::kRight;

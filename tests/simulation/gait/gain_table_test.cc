@@ -182,11 +182,6 @@ TEST(ShippedGains, HaveSetsForEveryGait) {
   }
 }
 
-}  // namespace
-
-namespace {
-
-using stream::Gait;
 using stream::kGaits;
 
 /// Every arrow from `phases` that some combination of the cues takes.

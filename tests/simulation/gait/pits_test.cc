@@ -117,10 +117,6 @@ TEST(FootholdShift, MovesOffThePitToTheNearerSide) {
   EXPECT_EQ(shift(0.03, true), 0.25);  // A leap lands behind, as far as it can.
 }
 
-}  // namespace
-
-namespace {
-
 /// Footholds of a linear inverted pendulum that walks by the plan: from a settled walk with its
 /// supporting foot at 0, as many steps as asked for. Each step the capture point leaves the foot by
 /// 1 / d.

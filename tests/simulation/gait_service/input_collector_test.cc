@@ -258,10 +258,6 @@ TEST(InputCollector, AnInterfaceStaysOnTheRigThatWasNamed) {
   EXPECT_EQ(collector.rig(), "main");
 }
 
-}  // namespace
-
-namespace {
-
 using testing::HasSubstr;
 
 v1::RigFeatures* AddRig(v1::Tick& tick, const std::string& name, v1::DeviceRole role) {

@@ -76,10 +76,6 @@ TEST(Publish, AFrameCarriesEveryLinkAndContact) {
   EXPECT_EQ(message.overruns(), 4u);
 }
 
-}  // namespace
-
-namespace {
-
 Frame FrameAt(std::uint64_t commanded_step, std::uint64_t features, std::uint64_t taken_over_step) {
   Frame frame;
   frame.output.response.commanded = commanded_step;

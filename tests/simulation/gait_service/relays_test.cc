@@ -155,10 +155,6 @@ TEST(GameRelay, PublishesNoNumberThatIsNotFinite) {
   EXPECT_EQ(game->ghost->length_m, 0);
 }
 
-}  // namespace
-
-namespace {
-
 using testing::HasSubstr;
 
 const transport::SessionInfo kStudyClient{1, "footing-study", v1::ROLE_CONTROL};

@@ -97,10 +97,6 @@ TEST(AnyInterface, AJumpOutOfAWalkHasTheTablesSpeed) {
   EXPECT_NEAR(stick.Advance(0.1, inputs).speed_mps, walk_mps, 1e-9);
 }
 
-}  // namespace
-
-namespace {
-
 using stream::DeviceRole;
 using stream::Gait;
 using stream::TurnSource;

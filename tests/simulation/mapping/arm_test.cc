@@ -217,8 +217,6 @@ TEST(ArmMapping, RefusesBordersThatCross) {
 /// The arm interface behind the features of synthetic users whose remotes lie rotated in the hands.
 namespace {
 
-using stream::Gait;
-
 constexpr double kJumpsS = 5;
 
 /// The body and the two remotes of a user, and footingd's chain behind them.
@@ -287,10 +285,6 @@ TEST(ArmGrip, MirroredGripsDelayNoJumpOutOfAWalk) {
   // A quarter of a cycle of these walks.
   EXPECT_NEAR(mirrored_s / 3, straight_s / 3, 0.2);
 }
-
-}  // namespace
-
-namespace {
 
 /// The same rotation every 10 ms, for `seconds` from `from_s`.
 void Go(NeutralGrip& grip, double from_s, double seconds, double rotation_deg) {

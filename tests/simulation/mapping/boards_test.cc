@@ -326,12 +326,6 @@ TEST(Boards, WhoWalksAndLeansToOneSideAndTheOtherIsNeverTakenToRun) {
   }
 }
 
-}  // namespace
-
-namespace {
-
-using stream::Gait;
-
 constexpr double kStickStepRad = DegreesToRadians(5);
 
 JoystickInterface NewJoystick() {

@@ -130,11 +130,6 @@ TEST(Gestures, HandsOfDifferentFrequencyCommandNothing) {
   EXPECT_TRUE(ChangesOf(eval::Run(readings)).empty());
 }
 
-}  // namespace
-
-namespace {
-
-using stream::Gait;
 constexpr double kPi = std::numbers::pi;
 
 WristMapping Mapping() {

@@ -91,10 +91,6 @@ TEST(BestEstimator, DoesNotTrustLoadsWhileAFootStandsBesideItsBoard) {
   EXPECT_NEAR(best.estimate().p_WC_m.y(), 0, 0.03);
 }
 
-}  // namespace
-
-namespace {
-
 bool Finite(const Estimate& e) {
   bool finite = e.p_WC_m.allFinite() && e.v_WC_mps.allFinite() && e.a_WC_mps2.allFinite() &&
                 e.position_variance_m2.allFinite() && e.velocity_variance_m2ps2.allFinite() &&
@@ -270,10 +266,6 @@ TEST(FootPlace, AllThatTheCopHasBeenSinceTheLandingBoundsTheFoot) {
   }
   EXPECT_LT(std::sqrt(place.variance_m2().x()), 0.02);
 }
-
-}  // namespace
-
-namespace {
 
 // The greatest error of the height from 0.1 to 0.75 s after a fall of 2 m/s onto the cells, in
 // reported deviations. The knees give way by 40 cm, of which the posture sees `seen`.

@@ -107,10 +107,6 @@ TEST(BestEstimator, FindsHowMuchPlayTheCellsHave) {
   EXPECT_LT(HeightError(5), 0.1);  // Without a filter for it 0.127.
 }
 
-}  // namespace
-
-namespace {
-
 // The greatest height in four seconds in which the cells measure `share` of what they measured in
 // the T-pose, by a filter that takes that weight for granted and sees a posture of `posture_m`.
 double GreatestHeight(double share, double posture_m) {

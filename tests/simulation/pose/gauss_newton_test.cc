@@ -161,12 +161,6 @@ TEST(GaussNewton, AngularMomentumMovesWhatHandsAndFeetDoNotShow) {
   EXPECT_LT((reached - targets.angular_W).norm(), 0.02 * targets.angular_W.norm());
 }
 
-}  // namespace
-
-namespace {
-
-using body::Landmark;
-
 TEST(PoseTargets, APointMayBePlacedFromAnotherJoint) {
   World world;
   const Eigen::VectorXd& truth = world.poses.col(7);

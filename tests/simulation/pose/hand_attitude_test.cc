@@ -145,10 +145,6 @@ TEST(AttitudeFilter, ReportsAHeadingThatGetsLessCertain) {
   EXPECT_LT(filter.inclination_sd_rad(), DegreesToRadians(1));
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kStepS = 0.01;
 
 /// A device whose true orientation is known; its gyroscope has a bias.

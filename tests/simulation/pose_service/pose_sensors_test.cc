@@ -213,10 +213,6 @@ TEST_F(StrappedArmTest, NeedsBothStrapsAndNoModel) {
   EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kAwaitsTPose);
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::int64_t kStartNs = 5'000'000'000;
 
 struct PoseSensorsTest : testing::Test {
@@ -585,10 +581,6 @@ TEST_F(PoseSensorsTest, EveryCalibrationHasItsOwnNumber) {
   EXPECT_EQ(inputs.Front().calibrate_number, 2u);
   EXPECT_EQ(inputs.Front().subject_number, 4u);
 }
-
-}  // namespace
-
-namespace {
 
 v1::HandSample Sample(const std::string& tracker, const Eigen::Vector3d& p_W_m,
                       const Eigen::Vector3d& sd_m) {

@@ -208,10 +208,6 @@ TEST(PoseEvents, TheNextSubjectIsNamed) {
   EXPECT_THAT(events.Between(frame, {"p08", 1.6, 0, 0}, 3).events(0).text(), HasSubstr("70.0 kg"));
 }
 
-}  // namespace
-
-namespace {
-
 TEST(PosePublish, TheSkeletonHasALinkForEveryJointWithItsParent) {
   const body::Body person = reconstruction::MadePerson();
   const stream::Skeleton skeleton = ToSkeleton(person);
@@ -222,10 +218,6 @@ TEST(PosePublish, TheSkeletonHasALinkForEveryJointWithItsParent) {
     EXPECT_GT(skeleton.links[i].size_m.minCoeff(), 0);
   }
 }
-
-}  // namespace
-
-namespace {
 
 TEST(SubjectBody, HasTheSubjectsHeightAndWeight) {
   const auto body = MakeSubjectBody({"a", 1.62, 58, 0});

@@ -62,10 +62,6 @@ TEST(Reconstruction, InTheTPoseTheKneesAreStraight) {
   EXPECT_NEAR(off_rad, 0, 0.1);
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Delay, GoesBackToTheFirstValueAtMost) {
   Delay<int, 3> delay;
   delay.Add(10);

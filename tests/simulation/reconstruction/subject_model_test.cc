@@ -81,10 +81,6 @@ TEST(HandTrack, BeginsAnewAfterAPauseAndIgnoresWhatComesOutOfOrder) {
   EXPECT_EQ(track.At(1).p_W_m, Eigen::Vector3d(3, 2, 1));
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kCapM = 0.15;
 
 struct HeadSeatTest : testing::Test {
@@ -174,10 +170,6 @@ TEST_F(HeadSeatTest, ACapShowsTheTrunkAsWellAsAPointWithinTheHead) {
   EXPECT_LT(cap_m, 0.9 * none_m);
   EXPECT_NEAR(cap_m, within_m, 0.003);
 }
-
-}  // namespace
-
-namespace {
 
 using stream::BodyJoint;
 

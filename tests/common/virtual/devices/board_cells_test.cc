@@ -101,10 +101,6 @@ TEST(CellErrors, NoiseGainAndSlowErrorHaveTheirSpread) {
   EXPECT_NEAR(std::sqrt(square / 2000), 0.01, 0.001);
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kRateHz = 120;
 constexpr double kMassKg = 70;
 constexpr Eigen::Index kFrames = 600;
@@ -205,10 +201,6 @@ TEST(Follow, FindsTheStandardPersonAtRestOnBothSoles) {
   EXPECT_NEAR(course.com_m(2, 100), 1.0, 0.1);
 }
 
-}  // namespace
-
-namespace {
-
 Eigen::Vector2d InW(const SolePlace& sole, const Eigen::Vector2d& p_F_m) {
   const double c = std::cos(sole.yaw_rad), s = std::sin(sole.yaw_rad);
   return sole.heel_m +
@@ -245,10 +237,6 @@ TEST(LoadInsole, IsEvenUnderTheMiddleAndAtTheEdgeForACopBeyondIt) {
   EXPECT_NEAR(moment / 160, 0.235, 1e-4);
   for (const double load : LoadInsole(places, sole, {-5, {0, 0}})) EXPECT_EQ(load, 0);
 }
-
-}  // namespace
-
-namespace {
 
 constexpr double kPlatesMassKg = 60;  // By the same plates under the standing subject (static1).
 

@@ -154,10 +154,6 @@ TEST(Serial, DevicesOfOneSeedDifferByTheirKind) {
   EXPECT_NE(board, BalanceBoard(8).identity().serial);
 }
 
-}  // namespace
-
-namespace {
-
 Controller Plain() { return Controller(Memory(false)); }
 
 TEST(Controller, AnyReadWithinTheEepromComesInPiecesOfSixteen) {
@@ -369,10 +365,6 @@ TEST(Controller, InterleavedReportsCarryOneMomentInTwoHalves) {
   EXPECT_EQ(Report(y.begin(), y.begin() + 4), (Report{0x3f, 2 << 5, 1 << 5, 0x5a}));
   EXPECT_EQ(device.DataReport(first).value()[0], 0x3e);
 }
-
-}  // namespace
-
-namespace {
 
 std::array<std::uint8_t, 6> IdentityAt(const Memory& memory, std::uint32_t page,
                                        std::uint8_t* error = nullptr) {

@@ -147,10 +147,6 @@ TEST(PsMove, EndsAtTheRangeAndTakesWhatIsNotFiniteAsZero) {
   EXPECT_EQ(report[6], 0);
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kWiimoteG = 9.80665;
 
 Report SampleOf(Wiimote& wiimote, const Eigen::Vector3d& force) {

@@ -189,10 +189,6 @@ TEST(Amc, ErrorsSayFileLineAndWhatWasExpected) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 using test::ReadShared;
 
 struct Clip {

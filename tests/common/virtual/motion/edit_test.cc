@@ -197,10 +197,6 @@ TEST(Edit, AnyRigWithLandmarksOnlyLosesItsHelpers) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 Eigen::MatrixXd Sine(double frequency_hz, double rate_hz, Eigen::Index frames) {
   Eigen::MatrixXd signal(1, frames);
   for (Eigen::Index i = 0; i < frames; ++i) {

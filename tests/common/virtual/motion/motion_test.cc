@@ -291,10 +291,6 @@ TEST(C3d, ErrorsSayWhatWasExpected) {
   EXPECT_THAT(ParseC3d(file, "x.c3d").error().message, HasSubstr("the file ends before"));
 }
 
-}  // namespace
-
-namespace {
-
 using body::Landmark;
 
 constexpr double kRateHz = 120;

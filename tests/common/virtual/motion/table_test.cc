@@ -73,12 +73,6 @@ TEST(Table, ErrorsSayFileLineAndWhatWasExpected) {
   EXPECT_THAT(ToGroundForces(back, "g.mot").error().message, HasSubstr("do not rise"));
 }
 
-}  // namespace
-
-namespace {
-
-using testing::HasSubstr;
-
 constexpr const char* kTrc =
     "PathFileType\t4\t(X/Y/Z)\tx.trc\n"
     "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n"
