@@ -50,6 +50,9 @@ std::vector<std::string_view> Fields(std::string_view line, char separator);
 /// Takes the next word off the front of `line`; empty at its end.
 std::string_view TakeWord(std::string_view& line);
 
+/// With its ASCII letters in lower case.
+std::string Lower(std::string text);
+
 /// Whether both are equal but for the case of ASCII letters.
 bool EqualsIgnoringCase(std::string_view a, std::string_view b);
 

@@ -17,6 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "common/base/text.h"
 #include "common/runtime/files.h"
 
 namespace footing::tls {
@@ -241,8 +242,7 @@ std::string FingerprintOf(std::string_view der) {
 }
 
 std::optional<std::string> ParseFingerprint(std::string_view text) {
-  std::string lower;
-  for (const char c : text) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string lower = text::Lower(std::string(text));
   if (lower.starts_with(kPrefix)) lower.erase(0, kPrefix.size());
   std::string digits;
   for (const char c : lower) {

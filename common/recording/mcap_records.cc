@@ -6,6 +6,12 @@
 #include <zlib.h>
 
 namespace footing::mcap {
+
+std::string TextOf(const TextMap& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() ? "" : found->second;
+}
+
 namespace {
 
 template <std::unsigned_integral T>

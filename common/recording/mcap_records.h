@@ -46,6 +46,8 @@ enum class Opcode : std::uint8_t {
 };
 
 using TextMap = std::map<std::string, std::string>;
+/// The value of a key; empty where there is none.
+std::string TextOf(const TextMap& values, const std::string& key);
 
 /// First record of a file.
 struct Header {

@@ -28,11 +28,6 @@ void ReadNumber(const mcap::TextMap& values, const std::string& key, Number& num
   if (std::from_chars(found->second.data(), end, read).ptr == end) number = read;
 }
 
-std::string TextOf(const mcap::TextMap& values, const std::string& key) {
-  const auto found = values.find(key);
-  return found == values.end() ? "" : found->second;
-}
-
 /// The field of v1::Tick that a topic's messages are; 0 for other topics and for channels of a
 /// later version.
 std::uint32_t FieldOf(const std::string& channel) {
@@ -56,9 +51,9 @@ class TickCollector {
   void OnSession(const mcap::TextMap& values) {
     std::uint64_t epoch = 0;
     ReadNumber(values, "epoch", epoch);
-    RecordedServer& server = At(TextOf(values, "server"), epoch);
-    server.server_id = TextOf(values, "server_id");
-    server.version = TextOf(values, "server_version");
+    RecordedServer& server = At(mcap::TextOf(values, "server"), epoch);
+    server.server_id = mcap::TextOf(values, "server_id");
+    server.version = mcap::TextOf(values, "server_version");
     server.epoch = epoch;
     double rate_hz = 0;
     ReadNumber(values, "tick_rate_hz", rate_hz);

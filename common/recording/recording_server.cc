@@ -163,14 +163,9 @@ void RecordingServer::Stop(const std::string& reason) {
 
 namespace {
 
-std::string TextOf(const mcap::TextMap& values, const std::string& key) {
-  const auto found = values.find(key);
-  return found == values.end() ? "" : found->second;
-}
-
 /// A whole number within kMostInstantNs; nothing where there is none.
 std::optional<std::int64_t> WholeOf(const mcap::TextMap& values, const std::string& key) {
-  const std::string word = TextOf(values, key);
+  const std::string word = mcap::TextOf(values, key);
   const bool negative = !word.empty() && word[0] == '-';
   const auto count = text::ToCount(std::string_view(word).substr(negative ? 1 : 0));
   if (!count || *count > static_cast<std::size_t>(kMostInstantNs)) return std::nullopt;
@@ -179,13 +174,13 @@ std::optional<std::int64_t> WholeOf(const mcap::TextMap& values, const std::stri
 
 /// On one host both read the same clock: an estimate could only add its own error.
 bool OnThisHost(const mcap::TextMap& values) {
-  return TextOf(values, "address").rfind("unix:", 0) == 0;
+  return mcap::TextOf(values, "address").rfind("unix:", 0) == 0;
 }
 
 }  // namespace
 
 void TakeClock(const mcap::TextMap& values, RecordedServer& server) {
-  if (TextOf(values, "valid") != "true" || OnThisHost(values)) return;
+  if (mcap::TextOf(values, "valid") != "true" || OnThisHost(values)) return;
   const std::optional<std::int64_t> offset_ns = WholeOf(values, "server_minus_recorder_ns");
   if (!offset_ns) return;
   server.offset_ns = *offset_ns;
@@ -197,7 +192,7 @@ std::optional<std::int64_t> TakeSession(const mcap::TextMap& values, RecordedSer
   const std::optional<std::int64_t> recorder_ns = WholeOf(values, "recorder_host_ns");
   if (!server_ns || !recorder_ns) return std::nullopt;
   if (server.welcomes.size() < kMostSessions) server.welcomes.push_back({*server_ns, *recorder_ns});
-  const bool other_host = !TextOf(values, "address").empty() && !OnThisHost(values);
+  const bool other_host = !mcap::TextOf(values, "address").empty() && !OnThisHost(values);
   const std::int64_t offset_ns = *server_ns - *recorder_ns;
   if (other_host && !server.clock_measured && IsInstant(offset_ns)) server.offset_ns = offset_ns;
   const std::int64_t wall_ns = WholeOf(values, "server_wall_time_ns").value_or(0);

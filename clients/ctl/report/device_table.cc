@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "clients/ctl/report/live_screen.h"
+#include "common/base/text.h"
 
 namespace footing::ctl::display {
 namespace {
@@ -162,12 +162,6 @@ std::string SetupTable(const std::vector<stream::RigSetup>& rigs) {
 
 namespace {
 
-std::string Lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::string WhatThereIs(const std::vector<DeviceStatus>& devices) {
   if (devices.empty()) return "footingd has no device: pair one with footing-ctl pair";
   std::string text = "there are:";
@@ -183,17 +177,17 @@ std::string WhatThereIs(const std::vector<DeviceStatus>& devices) {
 }
 
 bool Answers(const DeviceStatus& device, const std::string& name) {
-  if (Lower(device.serial) == name || std::to_string(device.device) == name) return true;
+  if (text::Lower(device.serial) == name || std::to_string(device.device) == name) return true;
   if (device.role == stream::DeviceRole::kUnspecified) return false;
   if (device.state == stream::DeviceState::kLost) return false;
   const std::string role = stream::Name(device.role);
-  return name == role || name == Lower(device.rig) + "/" + role;
+  return name == role || name == text::Lower(device.rig) + "/" + role;
 }
 
 }  // namespace
 
 Result<DeviceStatus> FindDevice(const std::vector<DeviceStatus>& devices, const std::string& name) {
-  const std::string wanted = Lower(name);
+  const std::string wanted = text::Lower(name);
   std::vector<DeviceStatus> found;
   for (const DeviceStatus& device : devices) {
     if (Answers(device, wanted)) found.push_back(device);

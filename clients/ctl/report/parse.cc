@@ -6,6 +6,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "common/base/text.h"
+
 namespace footing::ctl::doctor {
 namespace {
 
@@ -13,12 +15,6 @@ std::string Trim(const std::string& text) {
   const std::size_t from = text.find_first_not_of(" \t\r");
   if (from == std::string::npos) return "";
   return text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
-}
-
-std::string Lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 /// The lines that are not comments, trimmed.
@@ -74,7 +70,7 @@ std::map<std::string, std::string> ParseIni(const std::string& text) {
   for (const std::string& line : Lines(text)) {
     const std::size_t equals = line.find('=');
     if (line[0] == '[' || equals == std::string::npos) continue;
-    values[Trim(line.substr(0, equals))] = Lower(Trim(line.substr(equals + 1)));
+    values[Trim(line.substr(0, equals))] = text::Lower(Trim(line.substr(equals + 1)));
   }
   return values;
 }
@@ -128,7 +124,7 @@ bool IgnoresSpecialDrivers(const std::string& text) {
 
 bool HasRule(const std::string& text) {
   for (const std::string& line : Lines(text)) {
-    const std::string lower = Lower(line);
+    const std::string lower = text::Lower(line);
     if (lower.find("hidraw") != std::string::npos && lower.find("057e") != std::string::npos) {
       return true;
     }

@@ -39,10 +39,7 @@ constexpr std::array<std::string_view, 7> kFilms{".mp4", ".mkv",  ".webm", ".mov
 
 /// The ending of a file's name in small letters: ".png".
 std::string EndingOf(const std::string& path) {
-  std::string ending = fs::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return text::Lower(fs::path(path).extension().string());
 }
 
 /// The program ffmpeg on the PATH; empty where it is not installed.

@@ -1,8 +1,6 @@
 #include "clients/view/render/target.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -12,6 +10,7 @@
 #include <stb_image_write.h>
 
 #include "clients/view/render/world.h"
+#include "common/base/text.h"
 
 namespace footing::render {
 namespace {
@@ -227,9 +226,7 @@ Result<void> WritePng(const Image& image, const std::string& path) {
 }
 
 Result<void> WritePicture(const Image& image, const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = text::Lower(std::filesystem::path(path).extension().string());
   if (ending != ".jpg" && ending != ".jpeg") return WritePng(image, path);
   errno = 0;
   return Written(

@@ -1,12 +1,11 @@
 #include "common/virtual/options/load.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstdio>
 #include <span>
 #include <utility>
 
+#include "common/base/text.h"
 #include "common/body/body.h"
 #include "common/body/landmarks.h"
 #include "common/runtime/files.h"
@@ -29,10 +28,7 @@ Result<std::string> Read(const std::string& path) { return config::ReadTextFile(
 std::string Ending(const std::string& path) {
   const auto dot = path.find_last_of("./");
   if (dot == std::string::npos || path[dot] == '/') return "";
-  std::string ending = path.substr(dot + 1);
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return text::Lower(path.substr(dot + 1));
 }
 
 bool IsMarkerFile(const std::string& ending) { return ending == "trc" || ending == "c3d"; }

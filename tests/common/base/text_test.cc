@@ -8,6 +8,11 @@ namespace {
 
 using testing::ElementsAre;
 
+TEST(Text, LowersAsciiLettersOnly) {
+  EXPECT_EQ(Lower("A b-C9.PNG"), "a b-c9.png");
+  EXPECT_EQ(Lower("\xc3\x84"), "\xc3\x84");  // A capital umlaut stays.
+}
+
 TEST(Csv, CellsAreTrimmedAndEmptyOnesCount) {
   EXPECT_THAT(Cells(" 1,\t2 ,,"), ElementsAre("1", "2", "", ""));
 }

@@ -424,21 +424,13 @@ TEST(MotionPlus, TellsTheEndOfItsRange) {
   EXPECT_TRUE(Calibrate({}, CountsOf16(0x8000, 0x8000, 0, false)).clipped);
 }
 
-using NunchukBlock = std::vector<std::uint8_t>;
-
 constexpr double kNunchukG = kStandardGravityMps2;
 
 // A real Nunchuk's (Adafruit_CircuitPython_Nunchuk issue 12).
-const NunchukBlock kNunchukReal = {0x7d, 0x7a, 0x7e, 0x0a, 0xb0, 0xaf, 0xb1, 0x12,
-                                   0xe5, 0x21, 0x7c, 0xe7, 0x23, 0x7a, 0xfc, 0x51};
+const Block kNunchukReal = {0x7d, 0x7a, 0x7e, 0x0a, 0xb0, 0xaf, 0xb1, 0x12,
+                            0xe5, 0x21, 0x7c, 0xe7, 0x23, 0x7a, 0xfc, 0x51};
 
-NunchukBlock NunchukTwo(const NunchukBlock& first, const NunchukBlock& second) {
-  NunchukBlock both = first;
-  both.insert(both.end(), second.begin(), second.end());
-  return both;
-}
-
-NunchukBlock WithChecksums(NunchukBlock block) {
+Block WithChecksums(Block block) {
   std::uint8_t sum = 0x55;
   for (std::size_t i = 0; i < 14; ++i) sum = static_cast<std::uint8_t>(sum + block[i]);
   block[14] = sum;
@@ -455,7 +447,7 @@ reports::NunchukCounts CountsOfNunchuk(std::uint16_t x, std::uint16_t y, std::ui
 }
 
 TEST(NunchukCalibration, ReadsARealBlock) {
-  const auto calibration = ParseNunchuk(NunchukTwo(kNunchukReal, kNunchukReal));
+  const auto calibration = ParseNunchuk(Two(kNunchukReal, kNunchukReal));
   EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
   EXPECT_EQ(calibration.problem, "");
   // 0x0a = 00'10'10: x 0, y 2, z 2; 0x12 = 01'00'10: x 1, y 0, z 2.
@@ -475,20 +467,19 @@ TEST(NunchukCalibration, TheMotionPlusCopyHasOneBlock) {
 
 TEST(NunchukCalibration, EitherChecksumCounts) {
   for (const std::size_t at : {14u, 15u}) {
-    NunchukBlock bad = kNunchukReal;
+    Block bad = kNunchukReal;
     bad[at] ^= 1;
-    const auto calibration = ParseNunchuk(NunchukTwo(bad, kNunchukReal));
+    const auto calibration = ParseNunchuk(Two(bad, kNunchukReal));
     EXPECT_EQ(calibration.origin, CalibrationOrigin::kDeviceCopy);
     EXPECT_THAT(calibration.problem, HasSubstr("checksum"));
   }
 }
 
 TEST(NunchukCalibration, UnusableBlocksGiveTypicalValues) {
-  NunchukBlock equal = kNunchukReal;
+  Block equal = kNunchukReal;
   for (std::size_t i = 0; i < 4; ++i) equal[4 + i] = equal[i];  // 1 g == 0 g.
-  for (const NunchukBlock& bad :
-       {NunchukBlock(32, 0x00), NunchukBlock(32, 0xff), NunchukBlock{}, NunchukBlock(15, 0x80),
-        NunchukTwo(WithChecksums(equal), WithChecksums(equal))}) {
+  for (const Block& bad : {Block(32, 0x00), Block(32, 0xff), Block{}, Block(15, 0x80),
+                           Two(WithChecksums(equal), WithChecksums(equal))}) {
     const auto calibration = ParseNunchuk(bad);
     EXPECT_EQ(calibration.origin, CalibrationOrigin::kDefaults);
     EXPECT_NE(calibration.problem, "");
@@ -499,7 +490,7 @@ TEST(NunchukCalibration, UnusableBlocksGiveTypicalValues) {
 }
 
 TEST(NunchukCalibration, AnImpossibleStickLeavesTheAccelerometer) {
-  NunchukBlock bad = kNunchukReal;
+  Block bad = kNunchukReal;
   bad[8] = bad[10];  // Upper end at the middle.
   const auto calibration = ParseNunchuk(WithChecksums(bad));
   EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
