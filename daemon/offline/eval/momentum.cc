@@ -106,7 +106,8 @@ ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose
   const double step_s = 1 / scene.rate_hz;
   std::vector<momentum::VerticalInput> vertical;
   for (std::size_t i = start; i < scene.frames.size(); ++i)
-    vertical.push_back(momentum::ToVerticalInput(scene.frames[i].loads, kContactN));
+    vertical.push_back(momentum::ToVerticalInput(
+        scene.frames[i].loads, momentum::PressureOf(scene.frames[i].loads, kContactN)));
   const auto height = momentum::SmoothVertical(
       momentum::HeightHypothesis(momentum::HeightRow::kInaccurate, scene.subject.arms_hang_m,
                                  pose.cell_noise_n, pose.mass_kg),
@@ -171,13 +172,14 @@ class TimedEstimator {
   TimedEstimator(const MomentumOptions& options, const momentum::Subject& subject,
                  const momentum::TPose& pose, double step_s)
       : paper_mode_(options.paper),
+        contacts_(subject, pose, step_s),
         best_(BestConfigOf(options), subject, pose, step_s),
         paper_({}, subject, pose, step_s) {}
 
   const momentum::Estimate& Advance(const momentum::ContactLoads& loads) {
     const auto began = std::chrono::steady_clock::now();
     const momentum::Estimate& estimate =
-        paper_mode_ ? paper_.Advance(loads, std::nullopt) : best_.Advance(loads);
+        paper_mode_ ? paper_.Advance(loads, std::nullopt) : best_.Advance(contacts_.Advance(loads));
     busy_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return estimate;
   }
@@ -185,6 +187,7 @@ class TimedEstimator {
 
  private:
   const bool paper_mode_;
+  momentum::ContactEstimator contacts_;
   momentum::BestEstimator best_;
   momentum::PaperEstimator paper_;
   double busy_s_ = 0;

@@ -6,9 +6,8 @@
 
 #include "daemon/simulation/momentum/angular_momentum.h"
 #include "daemon/simulation/momentum/calibration.h"
-#include "daemon/simulation/momentum/contact_loads.h"
+#include "daemon/simulation/momentum/contacts.h"
 #include "daemon/simulation/momentum/estimate.h"
-#include "daemon/simulation/momentum/foot_place.h"
 #include "daemon/simulation/momentum/height_hypotheses.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
 
@@ -30,62 +29,55 @@ struct BestConfig {
   HorizontalPrior lateral = LateralPrior();
   PostureError lateral_posture = PlainLateralPosture();
   PostureError height_posture = PlainHeightPosture();
-  FootContactConfig contact;
-  FootPlaceConfig place;
   double lag_s = 0;               ///< 0 to 0.2: positions of C come this much later, and better.
   double angular_memory_s = 1.0;  ///< The angular momentum leaks away in this time.
 };
 
-/// Our momentum: inverted-pendulum filters for the horizontal centre of mass, a self-calibrating
-/// filter bank for the vertical one, feet as places with covariance. A plain value that allocates
-/// nothing.
+/// Where C is by hands and feet alone, W: by the mean of all poses along the lateral axis, and by
+/// poses that were found to go with hands and feet. What is not finite says nothing.
+struct PostureCom {
+  double lateral_W_m = 0;
+  Eigen::Vector3d likely_W_m = Eigen::Vector3d::Zero();
+};
+
+/// Our momentum: inverted-pendulum filters for the horizontal centre of mass and a table of
+/// hypotheses for the vertical one, from the contacts and the postures of a frame. A plain value
+/// that allocates nothing.
 class BestEstimator {
  public:
   BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose, double step_s);
 
-  /// One frame, `step_s` after the one before. A source that is not valid, or values that are not
-  /// finite, make the frame a gap: the estimate coasts, its covariance grows, and after a second
-  /// it restarts when loads come again (`resets`).
-  const Estimate& Advance(const ContactLoads& loads);
-  /// Where C is by hands and feet alone, in the frame of the last Advance: by the mean of all poses
-  /// along the lateral axis, and by poses that were found to go with hands and feet. C is estimated
-  /// again. What is not finite, or comes in a gap, is passed over.
-  const Estimate& SeePosture(double lateral_W_m, const Eigen::Vector3d& likely_W_m);
+  /// One frame, `step_s` after the one before, with the posture where one is known. In a frame
+  /// without valid contacts the estimate coasts and its covariance grows; when a body comes back or
+  /// lands elsewhere it restarts (`resets`).
+  const Estimate& Advance(const ContactFrame& contacts,
+                          const std::optional<PostureCom>& posture = std::nullopt);
   const Estimate& estimate() const { return estimate_; }
   const HeightHypotheses& vertical() const { return vertical_; }
   /// Weighed in the T-pose, and again where what came after contradicts that.
   double mass_kg() const { return vertical_.mass_kg(); }
 
  private:
-  void Begin();
-  /// The feet come down after a flight that began elsewhere.
-  void LandElsewhere(const ContactLoads& loads);
-  void WatchFlight(const ContactLoads& loads, bool gap, double total_n);
-  void AdvanceFeet(const ContactLoads& loads);
-  void AdvanceCom(const ContactLoads& loads, bool gap);
-  void ReportCom(bool sees_posture);
+  using Place = HorizontalCom::Filter::Scalar;
+
+  void Begin(const Eigen::Vector2d& centre_m);
+  /// The feet come down after a flight that began elsewhere, or out of a silence.
+  void LandElsewhere(const ContactFrame& contacts);
+  void AdvanceCom(const ContactFrame& contacts);
+  void AdvanceAngular(const ContactFrame& contacts);
+  void SeePosture(const PostureCom& posture);
+  void Report(const ContactFrame& contacts, bool sees_posture);
   /// One axis of the horizontal place.
-  HorizontalCom::Filter::Scalar PlaceOn(std::size_t axis, bool sees_posture) const;
-  void AdvanceAngular();
-  Eigen::Vector2d Centre() const;
-  std::array<double, kFeet> FeetForward() const;
+  Place PlaceOn(std::size_t axis, bool sees_posture) const;
 
   BestConfig config_;
-  Subject subject_;
+  double com_height_m_;
   TPose pose_;
   double step_s_;
   int lag_steps_;
   std::array<HorizontalCom, 2> horizontal_;
   std::array<HorizontalCom, 2> travelling_;
   HeightHypotheses vertical_;
-  std::array<FootContact, kFeet> contacts_;
-  std::array<FootPlace, kFeet> places_;
-  std::array<Pressure, kFeet> pressures_{};
-  LoadShare load_share_;
-  StepWatch step_watch_;
-  double away_s_ = 0;    // Since the feet had load, or the sources were valid.
-  double aloft_s_ = 0;   // Since the feet had any load.
-  bool silent_ = false;  // The sources were not valid in the frame before.
   Estimate estimate_;
 };
 

@@ -15,7 +15,7 @@ constexpr std::size_t kGroupsPerFoot = VerticalInput::kGroups / kFeet;
 
 }  // namespace
 
-VerticalInput ToVerticalInput(const ContactLoads& loads, double least_cop_load_n) {
+VerticalInput ToVerticalInput(const ContactLoads& loads, const Pressure& both) {
   VerticalInput input;
   for (std::size_t f = 0; f < kFeet; ++f) {
     const FootLoads& foot = loads.feet[f];
@@ -23,9 +23,8 @@ VerticalInput ToVerticalInput(const ContactLoads& loads, double least_cop_load_n
     for (std::size_t i = 0; i < foot.count; ++i)
       input.load_n[f * kGroupsPerFoot + i * kGroupsPerFoot / foot.count] += foot.cells[i].load_n;
   }
-  const Pressure pressure = PressureOf(loads, least_cop_load_n);
-  input.cop_valid = pressure.cop_valid;
-  input.cop_m = pressure.p_WP_m.head<2>();
+  input.cop_valid = both.cop_valid;
+  input.cop_m = both.p_WP_m.head<2>();
   return input;
 }
 
@@ -53,7 +52,7 @@ bool TPoseCalibration::Advance(const ContactLoads& loads, double step_s) {
     Restart();
     return false;
   }
-  const VerticalInput groups = ToVerticalInput(loads, kLeastCopLoadN);
+  const VerticalInput groups = ToVerticalInput(loads, both);
   if (frames_ == 0) {
     first_cop_m_ = both.p_WP_m;
     foot_moment_sum_nm_.fill(Eigen::Vector3d::Zero());

@@ -54,7 +54,8 @@ class TPoseCalibration {
   TPose result_;
 };
 
-/// The loads by groups of cells: four of each foot, in the order of its cells.
-VerticalInput ToVerticalInput(const ContactLoads& loads, double least_cop_load_n);
+/// The loads by groups of cells: four of each foot, in the order of its cells. `both`: their
+/// pressure.
+VerticalInput ToVerticalInput(const ContactLoads& loads, const Pressure& both);
 
 }  // namespace footing::momentum

@@ -88,7 +88,7 @@ void BestSolver::Solve(const Measurement& then, const pose::PoseTargets& targets
     if (then.hands[side].valid) hands_W_m_[side] = then.hands[side].p_W_m;
   }
   features_.Advance(hands_W_m_, then.momentum);
-  if (posed_) posture_.Advance(hands_W_m_, then.momentum);
+  if (posed_) posture_.Advance(hands_W_m_, then.momentum.feet);
   const Source source = Choose(then);
   if (source != source_ && !first_) Solver(source).ContinueFrom(solver().q());
   first_ = false;

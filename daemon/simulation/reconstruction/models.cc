@@ -97,12 +97,11 @@ const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& 
   return values_;
 }
 
-momentum::Estimate WithoutLoads(const momentum::Estimate& estimate, double com_height_m) {
+momentum::Estimate WithoutLoads(const std::array<momentum::FootEstimate, momentum::kFeet>& feet,
+                                double com_height_m) {
   momentum::Estimate bare;
-  bare.time_s = estimate.time_s;
-  bare.valid = estimate.valid;
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
-    const momentum::FootEstimate& foot = estimate.feet[f];
+    const momentum::FootEstimate& foot = feet[f];
     momentum::FootEstimate& shown = bare.feet[f];
     shown.contact = foot.contact;
     shown.valid = foot.valid;

@@ -46,10 +46,11 @@ class Features {
   Values values_ = Values::Zero();
 };
 
-/// The same instant as hands and feet alone show it: the centre of mass over the middle of the
+/// An instant as hands and feet alone show it: the centre of mass over the middle of the
 /// feet, `com_height_m` high, without motion, no loads. Where the feet are and that they stand
 /// stays.
-momentum::Estimate WithoutLoads(const momentum::Estimate& estimate, double com_height_m);
+momentum::Estimate WithoutLoads(const std::array<momentum::FootEstimate, momentum::kFeet>& feet,
+                                double com_height_m);
 
 /// A matrix in single precision that is read once a frame from first to last: strips of kStrip
 /// rows, each a column after the other in memory. Its products are summed in the order of the

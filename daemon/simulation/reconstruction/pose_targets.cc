@@ -101,6 +101,7 @@ void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& ori
   momentum::BestConfig config;
   config.lag_s = options_.lag_steps() * options_.step_s();
   if (!model_->posture.empty()) config.height_posture = momentum::LearnedHeightPosture();
+  contacts_.emplace(model_->subject, pose, options_.step_s());
   estimator_.emplace(config, model_->subject, pose, options_.step_s());
   likely_.Start();
   plain_.Reset();
@@ -109,21 +110,25 @@ void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& ori
 }
 
 Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& points) {
-  Measurement now{UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
-                  estimator_->Advance(inputs.loads), UsableJoints(inputs.joints, origin_m_),
-                  UsableBelt(inputs.belt)};
-  if (options_.use_posture && now.both_hands()) {
-    SeePosture(points, now);
-  }
+  const momentum::ContactFrame& contacts = contacts_->Advance(inputs.loads);
+  Measurement now{.hands = UsableHands(inputs.hands, origin_m_),
+                  .arms = UsableArms(inputs.arms),
+                  .momentum = {},
+                  .joints = UsableJoints(inputs.joints, origin_m_),
+                  .belt = UsableBelt(inputs.belt)};
+  std::optional<momentum::PostureCom> posture;
+  if (options_.use_posture && now.both_hands()) posture = FindPosture(contacts.feet, points, now);
+  now.momentum = estimator_->Advance(contacts, posture);
   return now;
 }
 
-void BestEstimate::SeePosture(const JointPoints& points, Measurement& now) {
-  likely_.Advance({now.hands[0].p_W_m, now.hands[1].p_W_m}, now.momentum);
+momentum::PostureCom BestEstimate::FindPosture(const Feet& feet, const JointPoints& points,
+                                               Measurement& now) {
+  likely_.Advance({now.hands[0].p_W_m, now.hands[1].p_W_m}, feet);
   targets_ = {};
   AddHandTargets(*model_, now, options_.best, targets_);
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
-    AddFootTargets(model_->feet[f], now.momentum.feet[f], options_.best.foot, targets_);
+    AddFootTargets(model_->feet[f], feet[f], options_.best.foot, targets_);
   }
   MoveOrigin(origin_m_, targets_);
   plain_.Solve(targets_);
@@ -134,7 +139,7 @@ void BestEstimate::SeePosture(const JointPoints& points, Measurement& now) {
     learned_->Solve(targets_, likely_.Predict(origin_m_));
     now.posture_com_W_m = origin_m_ + body::CentreOfMass(model_->body, learned_->at());
   }
-  now.momentum = estimator_->SeePosture(origin_m_.y() + plain_m.y(), *now.posture_com_W_m);
+  return {origin_m_.y() + plain_m.y(), *now.posture_com_W_m};
 }
 
 void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& points) {

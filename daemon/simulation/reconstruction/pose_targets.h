@@ -8,6 +8,7 @@
 
 #include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/calibration.h"
+#include "daemon/simulation/momentum/contacts.h"
 #include "daemon/simulation/momentum/estimate.h"
 #include "daemon/simulation/momentum/horizontal_network.h"
 #include "daemon/simulation/momentum/paper_estimator.h"
@@ -48,7 +49,8 @@ void ReportTPose(const SubjectModel& model, const Options& options, Output& outp
 bool Calibrate(const Inputs& inputs, double step_s, momentum::TPoseCalibration& calibration,
                Output& output);
 
-/// Momentum of best mode: the filters of the loads, with where hands and feet alone place the COM.
+/// Momentum of best mode: from loads to contacts, from these and the hands to where they alone
+/// place the COM, and from both to the filters of the momentum. Nothing goes back.
 class BestEstimate {
  public:
   /// `model` must outlive it.
@@ -63,9 +65,10 @@ class BestEstimate {
   const LikelyPosture& posture() const { return likely_; }
 
  private:
-  /// Takes in the COM of poses of hands and feet alone: they use no load, so their errors are their
-  /// own.
-  void SeePosture(const JointPoints& points, Measurement& now);
+  using Feet = std::array<momentum::FootEstimate, momentum::kFeet>;
+
+  /// The COM of poses of hands and feet alone: they use no load, so their errors are their own.
+  momentum::PostureCom FindPosture(const Feet& feet, const JointPoints& points, Measurement& now);
   /// Adds the targets of a tracked head and a belt to hands and feet. Not for the pose about the
   /// mean of all: the lateral filter knows how that one errs by hands and feet.
   void AddExtraTargets(const Measurement& now, const JointPoints& points);
@@ -73,7 +76,8 @@ class BestEstimate {
   const SubjectModel* model_;
   Options options_;
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
-  std::optional<momentum::BestEstimator> estimator_;  ///< From Start on.
+  std::optional<momentum::ContactEstimator> contacts_;  ///< From Start on, as the next.
+  std::optional<momentum::BestEstimator> estimator_;
   pose::PoseTargets targets_;
   LikelyPosture likely_;
   pose::GaussNewton plain_;                   ///< About the mean of all poses.

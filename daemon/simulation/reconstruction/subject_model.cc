@@ -261,8 +261,8 @@ void LikelyPosture::Start() {
 }
 
 void LikelyPosture::Advance(const std::array<Eigen::Vector3d, kHands>& hands_W_m,
-                            const momentum::Estimate& estimate) {
-  const momentum::Estimate bare = WithoutLoads(estimate, model_->subject.com_height_m);
+                            const std::array<momentum::FootEstimate, momentum::kFeet>& feet) {
+  const momentum::Estimate bare = WithoutLoads(feet, model_->subject.com_height_m);
   middle_W_m_ = bare.p_WC_m;
   features_.Advance(hands_W_m, bare);
 }

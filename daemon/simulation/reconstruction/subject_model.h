@@ -230,7 +230,7 @@ class LikelyPosture {
   void Start();
   /// The next frame: fists in W, left and right.
   void Advance(const std::array<Eigen::Vector3d, kHands>& hands_W_m,
-               const momentum::Estimate& estimate);
+               const std::array<momentum::FootEstimate, momentum::kFeet>& feet);
   /// Posture of the last frame, from `origin_m`; only where the model knows postures.
   const Eigen::VectorXd& Predict(const Eigen::Vector3d& origin_m);
   const Features& features() const { return features_; }

@@ -68,27 +68,26 @@ TEST(LoadShare, IsNotWholeBesideABoardAndSoonIsAgain) {
 
 TEST(BestEstimator, DoesNotTrustLoadsWhileAFootStandsBesideItsBoard) {
   MadeBody body;
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   const auto stand = [&](double seconds, bool left_on_floor) {
     for (int i = 0; i < seconds / kMadeStepS; ++i) {
       ContactLoads loads = body.At(0);
       if (left_on_floor) loads.feet[0] = Board({0, 0, 0, 0});
-      best.Advance(loads);
-      best.SeePosture(0, {0, 0, kMadeHeightM});
+      best.Advance(loads, {{0, {0, 0, kMadeHeightM}}});
     }
   };
   stand(2, false);
-  EXPECT_TRUE(best.estimate().whole_weight);
+  EXPECT_TRUE(best.momentum.estimate().whole_weight);
   stand(2, true);
   for (int i = 0; i < 20; ++i) {
     stand(0.5, true);
-    EXPECT_FALSE(best.estimate().whole_weight) << i;
-    EXPECT_FALSE(best.estimate().trusted) << i;
-    EXPECT_NEAR(best.estimate().load_share, 0.5, 0.05);
+    EXPECT_FALSE(best.momentum.estimate().whole_weight) << i;
+    EXPECT_FALSE(best.momentum.estimate().trusted) << i;
+    EXPECT_NEAR(best.momentum.estimate().load_share, 0.5, 0.05);
   }
   stand(2, false);
-  EXPECT_TRUE(best.estimate().whole_weight);
-  EXPECT_NEAR(best.estimate().p_WC_m.y(), 0, 0.03);
+  EXPECT_TRUE(best.momentum.estimate().whole_weight);
+  EXPECT_NEAR(best.momentum.estimate().p_WC_m.y(), 0, 0.03);
 }
 
 bool Finite(const Estimate& e) {
@@ -103,7 +102,7 @@ bool Finite(const Estimate& e) {
 TEST(BestEstimator, HeightOfSquatsDoesNotDriftInTenMinutes) {
   MadeBody body = Squatter();
   const TPose pose = body.Calibrate();
-  BestEstimator best({}, {}, pose, kMadeStepS);
+  Estimators best({}, {}, pose, kMadeStepS);
   double first = 0, last = 0;
   constexpr int kFrames = 10 * 60 * 60, kMinute = 3600;
   for (int i = 0; i < kFrames; ++i) {
@@ -128,7 +127,7 @@ TEST(BestEstimator, OutlivesCellsWhoseGainIsWrongByOnePercent) {
     }
     return calibration.result();
   }();
-  BestEstimator best({}, {}, pose, kMadeStepS);
+  Estimators best({}, {}, pose, kMadeStepS);
   double sum = 0;
   constexpr int kFrames = 3 * 60 * 60;
   for (int i = 0; i < kFrames; ++i) {
@@ -151,7 +150,7 @@ TEST(BestEstimator, LagMakesTheHorizontalPlaceBetter) {
     };
     BestConfig config;
     config.lag_s = late * 0.2;
-    BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+    Estimators best(config, {}, body.Calibrate(), kMadeStepS);
     for (int i = 0; i < 1800; ++i) {
       const double t = i * kMadeStepS;
       const Estimate& now = best.Advance(body.At(t));
@@ -163,22 +162,26 @@ TEST(BestEstimator, LagMakesTheHorizontalPlaceBetter) {
 
 TEST(BestEstimator, PassesOverAPostureThatIsNotOne) {
   MadeBody body;
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
-  const Eigen::Vector3d before_m = best.Advance(body.At(0)).p_WC_m;
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(best.SeePosture(nan, {0, 0, 1}).p_WC_m, before_m);
-  EXPECT_EQ(best.SeePosture(0, {nan, 0, 1}).p_WC_m, before_m);
-  EXPECT_EQ(best.SeePosture(0, {0, 0, nan}).p_WC_m, before_m);
-  EXPECT_NE(best.SeePosture(0.1, {0, 0.1, 1.1}).p_WC_m, before_m);
+  const ContactLoads loads = body.At(0);
   ContactLoads lost = body.At(kMadeStepS);
   lost.feet[0].valid = false;
-  const Eigen::Vector3d coasted_m = best.Advance(lost).p_WC_m;
-  EXPECT_EQ(best.SeePosture(0.1, {0, 0.1, 1.1}).p_WC_m, coasted_m);
+  const auto com_m = [&](const ContactLoads& of, const std::optional<PostureCom>& posture) {
+    Estimators copy = best;
+    return Eigen::Vector3d(copy.Advance(of, posture).p_WC_m);
+  };
+  const Eigen::Vector3d before_m = com_m(loads, {});
+  EXPECT_EQ(com_m(loads, {{nan, {0, 0, 1}}}), before_m);
+  EXPECT_EQ(com_m(loads, {{0, {nan, 0, 1}}}), before_m);
+  EXPECT_EQ(com_m(loads, {{0, {0, 0, nan}}}), before_m);
+  EXPECT_NE(com_m(loads, {{0.1, {0, 0.1, 1.1}}}), before_m);
+  EXPECT_EQ(com_m(lost, {{0.1, {0, 0.1, 1.1}}}), com_m(lost, {}));
 }
 
 TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {
   MadeBody body;
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   const double before = best.Advance(body.At(0)).position_variance_m2.z();
   for (int i = 1; i < 300; ++i) {
     ContactLoads loads = body.At(i * kMadeStepS);
@@ -189,8 +192,8 @@ TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {
     EXPECT_FALSE(now.valid);
     ASSERT_TRUE(Finite(now)) << i;
   }
-  EXPECT_GT(best.estimate().position_variance_m2.z(), 10 * before);
-  EXPECT_EQ(best.estimate().resets, 0u);
+  EXPECT_GT(best.momentum.estimate().position_variance_m2.z(), 10 * before);
+  EXPECT_EQ(best.momentum.estimate().resets, 0u);
   const Estimate& back = best.Advance(body.At(6));
   EXPECT_TRUE(back.valid);
   EXPECT_EQ(back.resets, 1u);
@@ -200,7 +203,7 @@ TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {
 
 TEST(BestEstimator, StaysFiniteUnderAnyLoads) {
   MadeBody body;
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   noise::Random random(11);
   for (int i = 0; i < 20000; ++i) {
     ContactLoads loads = body.At(i * kMadeStepS);
@@ -213,7 +216,7 @@ TEST(BestEstimator, StaysFiniteUnderAnyLoads) {
 
 TEST(BestEstimator, FollowsAFootThatIsPutElsewhere) {
   MadeBody body;
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   const Eigen::Vector3d moved(0.12, -0.03, 0);
   for (int i = 0; i < 240; ++i) {
     ContactLoads loads = body.At(i * kMadeStepS);
@@ -230,14 +233,14 @@ TEST(BestEstimator, FollowsAFootThatIsPutElsewhere) {
       }
     best.Advance(loads);
     if (i == 140) {
-      EXPECT_FALSE(best.estimate().feet[1].contact);
-      EXPECT_NEAR(best.estimate().feet[1].airborne_s, 20 * kMadeStepS, 0.02);
+      EXPECT_FALSE(best.momentum.estimate().feet[1].contact);
+      EXPECT_NEAR(best.momentum.estimate().feet[1].airborne_s, 20 * kMadeStepS, 0.02);
     }
     if (i == 150) {
-      EXPECT_TRUE(best.estimate().feet[1].contact);
+      EXPECT_TRUE(best.momentum.estimate().feet[1].contact);
     }
   }
-  const FootEstimate& foot = best.estimate().feet[1];
+  const FootEstimate& foot = best.momentum.estimate().feet[1];
   // The sole's COP may be up to 15 cm ahead of the rest point: a standing foot tells its place
   // over the time that its COP wanders, so most of the way, not all, is found. 2.5 cm of it are
   // FootPlaceConfig::ahead_m: this person presses where one in the T-pose does.
@@ -282,18 +285,17 @@ double WorstOfALanding(double seen) {
   };
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   double worst = 0;
   for (int i = 0; i < 63; ++i) {
     const double t = i * kMadeStepS;
-    best.Advance(body.At(t));
     const double posture_m = kMadeHeightM + seen * (height_m(t) - kMadeHeightM);
-    const Estimate& now = best.SeePosture(0, {0, 0, posture_m});
+    const Estimate& now = best.Advance(body.At(t), {{0, {0, 0, posture_m}}});
     if (t < kLandS + 0.1) continue;
     const double off_m = std::abs(now.p_WC_m.z() - height_m(t));
     worst = std::max(worst, off_m / std::sqrt(now.position_variance_m2.z()));
   }
-  EXPECT_EQ(best.estimate().resets, 1u);
+  EXPECT_EQ(best.momentum.estimate().resets, 1u);
   return worst;
 }
 
@@ -305,7 +307,7 @@ TEST(BestEstimator, KnowsThatAPostureDoesNotShowHowFarKneesGiveWayInALanding) {
 // empty ones.
 Estimate FirstFrameAfter(bool silence) {
   MadeBody body;
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   for (int i = 0; i < 120; ++i) {
     ContactLoads loads = body.At(i * kMadeStepS);
     for (FootLoads& foot : loads.feet) {
@@ -371,24 +373,24 @@ TEST(StepWatch, SeesAFootThatStandsElsewhereUntilItHasStoodThere) {
 
 TEST(BestEstimator, ReportsAStepAndDoubtsWhereTheBodyIs) {
   MadeBody body;
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   const auto move = [&](double ahead_m, double left_share, double seconds) {
     for (int i = 0; i < seconds / kMadeStepS; ++i) best.Advance(Lunge(body, ahead_m, left_share));
   };
   move(0, 0.5, 2);
   move(0, 0, 0.4);  // A knee is raised, and the foot comes down where it was.
   move(0, 0.5, 0.4);
-  EXPECT_FALSE(best.estimate().stepped);
-  EXPECT_LT(std::sqrt(best.estimate().position_variance_m2.x()), 0.05);
+  EXPECT_FALSE(best.momentum.estimate().stepped);
+  EXPECT_LT(std::sqrt(best.momentum.estimate().position_variance_m2.x()), 0.05);
   move(0, 0, 0.4);
-  EXPECT_FALSE(best.estimate().stepped);
+  EXPECT_FALSE(best.momentum.estimate().stepped);
   move(0.4, 0.5, 0.2);
-  EXPECT_TRUE(best.estimate().stepped);
-  EXPECT_TRUE(best.estimate().trusted) << "the height is what it was";
-  EXPECT_GT(std::sqrt(best.estimate().position_variance_m2.x()), 0.1);
+  EXPECT_TRUE(best.momentum.estimate().stepped);
+  EXPECT_TRUE(best.momentum.estimate().trusted) << "the height is what it was";
+  EXPECT_GT(std::sqrt(best.momentum.estimate().position_variance_m2.x()), 0.1);
   move(0.4, 0.5, 4);
-  EXPECT_FALSE(best.estimate().stepped);
-  EXPECT_LT(std::sqrt(best.estimate().position_variance_m2.x()), 0.05);
+  EXPECT_FALSE(best.momentum.estimate().stepped);
+  EXPECT_LT(std::sqrt(best.momentum.estimate().position_variance_m2.x()), 0.05);
 }
 
 }  // namespace
@@ -439,13 +441,12 @@ struct Seen {
 Seen Watch(MadeBody body, bool sees_posture, double lag_s = 0) {
   BestConfig config;
   config.lag_s = lag_s;
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   Seen seen;
   for (double t = 0; t < 1.9; t += kMadeStepS) {
-    best.Advance(body.At(t));
-    const Eigen::Vector3d c = body.com_m(t);
-    if (sees_posture) best.SeePosture(0, {c.x() + kPostureOffM, 0, kMadeHeightM});
-    const Estimate& now = best.estimate();
+    std::optional<PostureCom> posture;
+    if (sees_posture) posture = {0, {body.com_m(t).x() + kPostureOffM, 0, kMadeHeightM}};
+    const Estimate& now = best.Advance(body.At(t), posture);
     const double off_m = std::abs(now.p_WC_m.x() - body.com_m(t - lag_s).x());
     seen.worst_m = std::max(seen.worst_m, off_m);
     seen.worst_spreads =
@@ -505,7 +506,7 @@ AfterChange SquatAfterChange(double share, double stand_s) {
   };
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   AfterChange after;
   constexpr int kFrames = 300;
   int squatting = 0;
@@ -515,11 +516,10 @@ AfterChange SquatAfterChange(double share, double stand_s) {
     for (FootLoads& foot : loads.feet) {
       for (Cell& cell : foot.cells) cell.load_n *= t < kChangeS ? 1 : share;
     }
-    best.Advance(loads);
     const double posture_m = kMadeHeightM + 0.1 * (height_m - kMadeHeightM);
-    const double error_m = best.SeePosture(0, {0, 0, posture_m}).p_WC_m.z() - height_m;
+    const double error_m = best.Advance(loads, {{0, {0, 0, posture_m}}}).p_WC_m.z() - height_m;
     if (t < stand_s) {
-      after.mass_kg = best.mass_kg();
+      after.mass_kg = best.momentum.mass_kg();
       continue;
     }
     ++squatting;
@@ -558,12 +558,11 @@ TEST(BestEstimator, AMotionThatBeginsEvenlyIsNoWeight) {
     BestConfig config;
     config.height_posture = LearnedHeightPosture();
     const TPose pose = body.Calibrate();
-    BestEstimator best(config, {}, pose, kMadeStepS);
+    Estimators best(config, {}, pose, kMadeStepS);
     for (int i = 0; i < 180; ++i) {
       const double t = i * kMadeStepS, height_m = body.com_m(t).z();
-      best.Advance(body.At(t));
-      best.SeePosture(0, {0, 0, kMadeHeightM + 0.3 * (height_m - kMadeHeightM)});
-      EXPECT_EQ(best.mass_kg(), pose.mass_kg) << mps2 << " at " << t;
+      best.Advance(body.At(t), {{0, {0, 0, kMadeHeightM + 0.3 * (height_m - kMadeHeightM)}}});
+      EXPECT_EQ(best.momentum.mass_kg(), pose.mass_kg) << mps2 << " at " << t;
     }
   }
 }
@@ -580,7 +579,7 @@ namespace {
 // Root mean square error of the height over a minute in which the cells tell `share` of what they
 // told in the T-pose.
 double HeightErrorAfter(MadeBody body, double share, double& mass_kg) {
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   double sum = 0;
   constexpr int kFrames = 3600;
   for (int i = 0; i < kFrames; ++i) {
@@ -590,7 +589,7 @@ double HeightErrorAfter(MadeBody body, double share, double& mass_kg) {
     const double error = best.Advance(loads).p_WC_m.z() - body.com_m(i * kMadeStepS).z();
     sum += error * error;
   }
-  mass_kg = best.mass_kg();
+  mass_kg = best.momentum.mass_kg();
   return std::sqrt(sum / kFrames);
 }
 
@@ -621,7 +620,7 @@ TEST(BestEstimator, KeepsTheWeightThatTheTPoseHadRight) {
 
 TEST(BestEstimator, KeepsTheWeightThatItFoundWhenTheBodyStepsOff) {
   MadeBody body = Squatter();
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  Estimators best({}, {}, body.Calibrate(), kMadeStepS);
   for (int i = 0; i < 3600; ++i) {
     ContactLoads loads = body.At(i * kMadeStepS);
     const bool away = i >= 3000 && i < 3120;
@@ -629,10 +628,10 @@ TEST(BestEstimator, KeepsTheWeightThatItFoundWhenTheBodyStepsOff) {
       for (Cell& cell : foot.cells) cell.load_n *= away ? 0 : 0.95;
     best.Advance(loads);
     if (i > 3120) {
-      EXPECT_NEAR(best.mass_kg(), 0.95 * kMadeMassKg, 0.003 * kMadeMassKg) << i;
+      EXPECT_NEAR(best.momentum.mass_kg(), 0.95 * kMadeMassKg, 0.003 * kMadeMassKg) << i;
     }
   }
-  EXPECT_EQ(best.estimate().resets, 1u);
+  EXPECT_EQ(best.momentum.estimate().resets, 1u);
 }
 
 // A posture that is wrong by a first-order process along each axis.
@@ -662,13 +661,14 @@ TEST(BestEstimator, APostureTellsWhatLoadsCannot) {
   for (const int seen : {0, 1}) {
     MadeBody body;
     body.com_m = com_m;
-    BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+    Estimators best({}, {}, body.Calibrate(), kMadeStepS);
     WrongPosture posture;
     for (int i = 0; i < 3600; ++i) {
       const double t = i * kMadeStepS;
-      Eigen::Vector3d told_m = best.Advance(body.At(t)).p_WC_m;
       const Eigen::Vector3d seen_m = posture.Of(com_m(t));
-      if (seen == 1) told_m = best.SeePosture(seen_m.y(), seen_m).p_WC_m;
+      std::optional<PostureCom> told;
+      if (seen == 1) told = {seen_m.y(), seen_m};
+      const Eigen::Vector3d told_m = best.Advance(body.At(t), told).p_WC_m;
       rms[seen] += (told_m - com_m(t)).cwiseAbs2() / 3600;
     }
     rms[seen] = rms[seen].cwiseSqrt();
@@ -687,7 +687,7 @@ HeightErrors ErrorsAfterChange(double share, double change_s, double from_s) {
   MadeBody body = Squatter();
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   WrongPosture posture;
   HeightErrors errors;
   int count = 0;
@@ -697,9 +697,8 @@ HeightErrors ErrorsAfterChange(double share, double change_s, double from_s) {
     for (FootLoads& foot : loads.feet) {
       for (Cell& cell : foot.cells) cell.load_n *= t < change_s ? 1 : share;
     }
-    best.Advance(loads);
     const Eigen::Vector3d seen_m = posture.Of(body.com_m(t));
-    const Estimate& now = best.SeePosture(seen_m.y(), seen_m);
+    const Estimate& now = best.Advance(loads, {{seen_m.y(), seen_m}});
     if (t < from_s) continue;
     const double error = now.p_WC_m.z() - body.com_m(t).z();
     ++count;
@@ -730,13 +729,13 @@ double GreatestHeightError(double (*height_m)(double)) {
   body.com_m = [height_m](double t) { return Eigen::Vector3d(0, 0, kMadeHeightM + height_m(t)); };
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   double greatest_m = 0;
   for (int i = 0; i < 8 * 60; ++i) {
     const double t = i * kMadeStepS, now_m = height_m(t);
-    best.Advance(body.At(t));
     const double told_m =
-        best.SeePosture(0, {0, 0, kMadeHeightM + std::max(now_m, 0.5 * now_m)}).p_WC_m.z();
+        best.Advance(body.At(t), {{0, {0, 0, kMadeHeightM + std::max(now_m, 0.5 * now_m)}}})
+            .p_WC_m.z();
     greatest_m = std::max(greatest_m, std::abs(told_m - kMadeHeightM - now_m));
   }
   return greatest_m;
@@ -767,7 +766,7 @@ TEST(BestEstimator, ComesBackWithinASecondOfALandingThatItDidNotSeeComing) {
   MadeBody body;
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   // Off the cells for three seconds; back on them out of a fall, knees giving way by 15 cm.
   const auto height_m = [](double t) {
     return kMadeHeightM - (t < 3 ? 0 : 0.15 * Ramp(2 * (t - 3)));
@@ -781,8 +780,7 @@ TEST(BestEstimator, ComesBackWithinASecondOfALandingThatItDidNotSeeComing) {
         for (Cell& cell : foot.cells) cell.load_n = 0;
       }
     }
-    best.Advance(loads);
-    const Estimate& now = best.SeePosture(0, {0, 0, height_m(t) + 0.04});
+    const Estimate& now = best.Advance(loads, {{0, {0, 0, height_m(t) + 0.04}}});
     if (t > 1.2 && t < 2.9) {
       EXPECT_FALSE(now.valid);
     }
@@ -791,7 +789,7 @@ TEST(BestEstimator, ComesBackWithinASecondOfALandingThatItDidNotSeeComing) {
       EXPECT_NEAR(now.p_WC_m.z(), height_m(t), 0.14) << t;
     }
   }
-  EXPECT_EQ(best.estimate().resets, 1u);
+  EXPECT_EQ(best.momentum.estimate().resets, 1u);
 }
 
 TEST(BestEstimator, LandsAfterAShortFlightThatBeganElsewhere) {
@@ -814,18 +812,18 @@ TEST(BestEstimator, LandsAfterAShortFlightThatBeganElsewhere) {
   };
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   for (int i = 0; i < 3 * 60; ++i) {
     const double t = i * kMadeStepS;
-    best.Advance(body.At(t));
-    const Estimate& now = best.SeePosture(0, {0, 0, 0.5 * (kMadeHeightM + height_m(t))});
+    const Estimate& now =
+        best.Advance(body.At(t), {{0, {0, 0, 0.5 * (kMadeHeightM + height_m(t))}}});
     if (t < kLandS + 1) continue;
     EXPECT_TRUE(now.trusted) << t;
     EXPECT_TRUE(now.valid) << t;
     EXPECT_NEAR(now.p_WC_m.z(), height_m(t), 0.1) << t;
     EXPECT_NEAR(now.p_WC_m.x(), 0.08, 0.03) << t;
   }
-  EXPECT_EQ(best.estimate().resets, 1u);
+  EXPECT_EQ(best.momentum.estimate().resets, 1u);
 }
 
 TEST(BestEstimator, AJumpOnTheSpotIsNoLandingElsewhere) {
@@ -852,14 +850,14 @@ TEST(BestEstimator, AJumpOnTheSpotIsNoLandingElsewhere) {
   body.com_m = [&](double t) { return Eigen::Vector3d(0, 0, kMadeHeightM + height_m(t)); };
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  Estimators best(config, {}, body.Calibrate(), kMadeStepS);
   for (int i = 0; i < 3 * 60; ++i) {
     const double t = i * kMadeStepS;
-    best.Advance(body.At(t));
-    best.SeePosture(0, {0, 0, kMadeHeightM + std::max(0.5 * height_m(t), height_m(t))});
-    EXPECT_NEAR(best.estimate().p_WC_m.z(), kMadeHeightM + height_m(t), 0.1) << t;
+    best.Advance(body.At(t),
+                 {{0, {0, 0, kMadeHeightM + std::max(0.5 * height_m(t), height_m(t))}}});
+    EXPECT_NEAR(best.momentum.estimate().p_WC_m.z(), kMadeHeightM + height_m(t), 0.1) << t;
   }
-  EXPECT_EQ(best.estimate().resets, 0u);
+  EXPECT_EQ(best.momentum.estimate().resets, 0u);
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "common/base/units.h"
 #include "common/virtual/devices/noise.h"
+#include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
+#include "daemon/simulation/momentum/contacts.h"
 
 namespace footing::momentum {
 
@@ -63,6 +66,24 @@ struct MadeBody {
     return calibration.result();
   }
 };
+
+/// From loads to momentum, by way of the contacts.
+struct Estimators {
+  Estimators(const BestConfig& config, const Subject& subject, const TPose& pose, double step_s)
+      : contacts(subject, pose, step_s), momentum(config, subject, pose, step_s) {}
+
+  const Estimate& Advance(const ContactLoads& loads,
+                          const std::optional<PostureCom>& posture = std::nullopt) {
+    return momentum.Advance(contacts.Advance(loads), posture);
+  }
+
+  ContactEstimator contacts;
+  BestEstimator momentum;
+};
+
+inline VerticalInput Groups(const ContactLoads& loads, double least_cop_load_n) {
+  return ToVerticalInput(loads, PressureOf(loads, least_cop_load_n));
+}
 
 /// 0 before t = 0, then from rest into a steady value of 1 within a second.
 inline double Ramp(double t) {

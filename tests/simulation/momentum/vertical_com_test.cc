@@ -90,14 +90,13 @@ double HeightError(double half_width_n) {
   }
   BestConfig config;
   config.height_posture = LearnedHeightPosture();
-  BestEstimator best(config, {}, calibration.result(), kMadeStepS);
+  Estimators best(config, {}, calibration.result(), kMadeStepS);
   double square_m2 = 0;
   constexpr int kFrames = 30 * 60;
   for (int i = 0; i < kFrames; ++i) {
     const double t = i * kMadeStepS, height_m = body.com_m(t).z();
-    best.Advance(read(t));
     const double posture_m = kMadeHeightM + 0.2 * (height_m - kMadeHeightM);
-    square_m2 += std::pow(best.SeePosture(0, {0, 0, posture_m}).p_WC_m.z() - height_m, 2);
+    square_m2 += std::pow(best.Advance(read(t), {{0, {0, 0, posture_m}}}).p_WC_m.z() - height_m, 2);
   }
   return std::sqrt(square_m2 / kFrames);
 }
@@ -120,7 +119,7 @@ double GreatestHeight(double share, double posture_m) {
   filter.Start(pose.mean_loads);
   double greatest_m = 0;
   for (int i = 0; i < 4 * 60; ++i) {
-    VerticalInput input = ToVerticalInput(body.At(i * kMadeStepS), 20);
+    VerticalInput input = Groups(body.At(i * kMadeStepS), 20);
     for (double& load : input.load_n) load *= share;
     filter.Advance(input);
     filter.SeePosture(posture_m);
@@ -149,7 +148,7 @@ TEST(HeightHypotheses, APostureThatStaysShowsThatTheTPoseWeighedWrong) {
     bank.Start(pose.mean_loads);
     double worst_m = 0;
     for (int i = 0; i < 4 * 60; ++i) {
-      VerticalInput input = ToVerticalInput(body.At(i * kMadeStepS), 20);
+      VerticalInput input = Groups(body.At(i * kMadeStepS), 20);
       for (double& load : input.load_n) load *= share;
       bank.Advance(input);
       bank.SeePosture(0);
@@ -181,7 +180,7 @@ double LaterSquatsError(double share, double extra) {
   constexpr int kFrom = 12 * 60, kFrames = 24 * 60;
   for (int i = 0; i < kFrames; ++i) {
     const double t = i * kMadeStepS, height_m = body.com_m(t).z() - kMadeHeightM;
-    VerticalInput input = ToVerticalInput(body.At(t), 20);
+    VerticalInput input = Groups(body.At(t), 20);
     for (double& load : input.load_n) load *= share + (height_m < -0.15 ? extra : 0);
     bank.Advance(input);
     bank.SeePosture(0.1 * height_m);
