@@ -193,8 +193,8 @@ using stream::UserInterface;
 /// Nobody is given up before: the paper's subjects all finished.
 constexpr double kLongestS = 600;
 constexpr double kKickNs = 2;
-/// People stand before the start line until a trial begins.
-constexpr double kStandsS = 1;
+/// People stand before the start line until a trial begins, or run towards it.
+constexpr double kStandsS = 1, kRunsMps = 2;
 constexpr int kStepsPerSight = 10;
 /// Time in which people change over from one motion to another (common/virtual/people/person.cc).
 constexpr double kChangeOverS = 0.4;
@@ -268,7 +268,7 @@ class TrackTrial {
       embodied_.emplace(Embodied{{*user.interface, StyleOf(user), user.seed, user.turn_by},
                                  {*user.interface, user.turn_by, user.seed}});
     }
-    if (embodied_) Stand();
+    if (embodied_) WaitForTrial();
     inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), user.seed)};
   }
 
@@ -285,9 +285,11 @@ class TrackTrial {
   }
 
  private:
-  void Stand() {
+  void WaitForTrial() {
+    users::Intention until = {};
+    if (user_.starts_running) until = {.gait = Gait::kRun, .speed_mps = kRunsMps};
     while (engine_.Output().time_s < kStandsS) {
-      Move(engine_.Output().time_s, {});
+      Move(engine_.Output().time_s, until);
       for (int i = 0; i < kStepsPerSight; ++i) engine_.Advance(inputs_);
       Compare();
     }

@@ -159,6 +159,8 @@ struct TrackUser {
   std::string mapping_table = {};                          ///< Path; empty: the built-in one.
   stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< Used by the leg interface.
   std::uint64_t seed = 1;  ///< Seed of the user's style and noise, the task and the push.
+  /// Begins in mid-run: nobody has seen the limbs at rest. Else stands before the start line.
+  bool starts_running = false;
   /// Ends after this time at the latest; without it a trial ends at the finish line.
   std::optional<double> seconds = {};
 };

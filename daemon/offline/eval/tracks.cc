@@ -39,6 +39,7 @@ struct TrackOptions {
   users::StyleWish style;
   std::string table;
   std::string turn_by;
+  std::string start = "stand";
   std::optional<double> seconds;
   std::string trace;
 };
@@ -103,6 +104,7 @@ Result<TrackTrials> RunTrials(const TrackOptions& options, const std::string& tr
   TrackTrials trials;
   for (int i = 0; i < options.trials; ++i) {
     user.seed = TrialSeed(seed, i);
+    user.starts_running = options.start == "run" || (options.start == "half" && i % 2 == 1);
     const Result<TrackResult> run = RunTrack(track, user, *trace);
     if (!run) return run.error();
     if (const auto written = trace->Flush(); !written) return written.error();
@@ -243,6 +245,11 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
       ->add_option("--seconds", options->seconds,
                    "Duration of a trial, s (default: to the finish line, at most 600)")
       ->check(CLI::Range(1.0, 1e5));
+  command
+      ->add_option(
+          "--start", options->start,
+          "How users begin: stand (default), run (in mid-run), or half: every second one runs")
+      ->check(CLI::IsMember({"stand", "run", "half"}));
   command->add_option("--trace", options->trace,
                       "CSV file to write: what user, interface and character do, every 10 ms");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });

@@ -157,11 +157,22 @@ SwingEnd Next(const SwingEnd& before, const SwingLine& line, const CycleConfig& 
   return {known, Continued(line, before, config).angle_rad};
 }
 
+namespace {
+
+/// Cosine of the elevation of the front from which gravity shows a rotation about it: a hanging
+/// forearm is 10 to 20 degrees off the vertical.
+constexpr double kLeastAcross = 0.15;
+
+}  // namespace
+
 Inclination InclinationOf(const Eigen::Vector3d& gravity_mps2) {
   const auto angle = [](double along_mps2) {
     return std::asin(std::clamp(along_mps2 / kStandardGravityMps2, -1.0, 1.0));
   };
-  return {angle(gravity_mps2.x()), angle(gravity_mps2.y())};
+  const double across_mps2 = std::hypot(gravity_mps2.x(), gravity_mps2.z());
+  const bool level = across_mps2 > kLeastAcross * gravity_mps2.norm();
+  return {angle(gravity_mps2.x()), angle(gravity_mps2.y()), level,
+          level ? std::atan2(gravity_mps2.x(), -gravity_mps2.z()) : 0};
 }
 
 namespace {

@@ -56,6 +56,11 @@ Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& co
 struct Inclination {
   double roll_rad = 0;   ///< asin(ax / g): left side higher is positive.
   double pitch_rad = 0;  ///< asin(ay / g): front higher is positive.
+  /// Rotation about the front by the direction of (ax, -az): a force towards the joint of a limb
+  /// that swings makes the mean larger than g, which shifts the others but not this. 0 where the
+  /// front is near the vertical.
+  bool axial_valid = false;
+  double axial_rad = 0;
 };
 
 /// From gravity as the sensor sees it; always finite.

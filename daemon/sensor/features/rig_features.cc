@@ -309,7 +309,8 @@ void DeviceFeatureExtractor::Forget() {
   features_.moving = features_.frequency_valid = features_.amplitude_valid = false;
   features_.inclination_valid = features_.held = features_.swing_valid = false;
   features_.frequency_hz = features_.amplitude_mps2 = 0;
-  features_.roll_rad = features_.pitch_rad = features_.swing_rad = 0;
+  features_.roll_rad = features_.pitch_rad = features_.swing_rad = features_.axial_rad = 0;
+  features_.axial_valid = false;
 }
 
 void DeviceFeatureExtractor::MeasureRest() {
@@ -320,10 +321,16 @@ void DeviceFeatureExtractor::MeasureRest() {
       std::min(grid_.size(), static_cast<int>(std::lround(config_.rest_window_s * kGridHz)));
   const Eigen::Vector3d gravity = grid_.Filtered(count).colwise().mean().transpose();
   gravity_mps2_ = gravity;
-  const Inclination inclination = InclinationOf(gravity);
+  TakeInclination(gravity);
+}
+
+void DeviceFeatureExtractor::TakeInclination(const Eigen::Vector3d& gravity_mps2) {
+  const Inclination inclination = InclinationOf(gravity_mps2);
   features_.inclination_valid = true;
   features_.roll_rad = inclination.roll_rad;
   features_.pitch_rad = inclination.pitch_rad;
+  features_.axial_valid = inclination.axial_valid;
+  features_.axial_rad = inclination.axial_rad;
 }
 
 void DeviceFeatureExtractor::MeasureCycle() {
@@ -348,10 +355,7 @@ void DeviceFeatureExtractor::MeasureCycle() {
   features_.swing_valid = cycle.swing.valid;
   features_.swing_rad = Continued(cycle.swing, swing_end_, config_.cycle).angle_rad;
   swing_end_ = Next(swing_end_, cycle.swing, config_.cycle);
-  const Inclination inclination = InclinationOf(cycle.mean_mps2);
-  features_.inclination_valid = true;
-  features_.roll_rad = inclination.roll_rad;
-  features_.pitch_rad = inclination.pitch_rad;
+  TakeInclination(cycle.mean_mps2);
 }
 
 void DeviceFeatureExtractor::Observe(std::int64_t now_ns, const Partner& partner) {

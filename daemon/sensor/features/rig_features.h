@@ -124,6 +124,7 @@ class DeviceFeatureExtractor {
  private:
   void MeasureCycle();
   void MeasureRest();
+  void TakeInclination(const Eigen::Vector3d& gravity_mps2);
   void Forget();
 
   Config config_;

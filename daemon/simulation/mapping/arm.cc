@@ -84,8 +84,7 @@ using stream::DeviceRole;
 
 /// A hand whose controller was missing for this long may hold it otherwise.
 constexpr double kForgetS = 5;
-/// Cosine of the elevation from which gravity shows a forearm's rotation about itself: hanging it
-/// is 10 to 20 degrees off the vertical.
+/// Cosine of the elevation from which an inclination shows a forearm's rotation about itself.
 constexpr double kLeastLevel = 0.15;
 
 std::optional<double> MeanElevation(const LimbPair& hands) {
@@ -137,6 +136,8 @@ std::optional<double> ForearmRotation(const LimbFeatures& hand, bool by_swing) {
   if (by_swing) return hand.swing_valid ? std::optional(hand.swing_rad) : std::nullopt;
   if (!hand.inclination_valid) return std::nullopt;
   if (hand.mounted) return hand.roll_rad;
+  if (hand.axial_valid) return hand.axial_rad;
+  // Earlier versions of footingd send no axial angle. In a run this one is half as much again.
   const double level = std::cos(hand.pitch_rad);
   if (level < kLeastLevel) return std::nullopt;
   return std::asin(std::clamp(std::sin(hand.roll_rad) / level, -1.0, 1.0));

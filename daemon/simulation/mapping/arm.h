@@ -75,8 +75,8 @@ Result<ArmMapping> ParseArmMapping(const std::string& text, const std::string& o
 std::optional<double> ForearmElevation(const LimbFeatures& hand);
 
 /// Rotation of a controller about the forearm, left side up. `by_swing`: from the direction of its
-/// swing, which straight arms show; else from its inclination, however high the forearm is, unless
-/// it hangs straight down. Not known: none.
+/// swing, which straight arms show; else from the direction of gravity, however high the forearm
+/// is, unless it hangs straight down. Not known: none.
 std::optional<double> ForearmRotation(const LimbFeatures& hand, bool by_swing);
 
 /// The arm interface of the gait paper, section 7: two controllers in the hands of swinging arms.

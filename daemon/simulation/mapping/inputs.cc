@@ -56,11 +56,13 @@ LimbFeatures ToLimb(const stream::DeviceFeatures& device, bool mounted) {
   limb.inclination_valid =
       device.inclination_valid && std::isfinite(device.roll_rad) && std::isfinite(device.pitch_rad);
   limb.swing_valid = device.swing_valid && std::isfinite(device.swing_rad);
+  limb.axial_valid = device.axial_valid && std::isfinite(device.axial_rad);
   if (limb.frequency_valid) limb.frequency_hz = device.frequency_hz;
   if (limb.amplitude_valid) limb.amplitude_mps2 = device.amplitude_mps2;
   if (limb.inclination_valid) limb.roll_rad = device.roll_rad;
   if (limb.inclination_valid) limb.pitch_rad = device.pitch_rad;
   if (limb.swing_valid) limb.swing_rad = device.swing_rad;
+  if (limb.axial_valid) limb.axial_rad = device.axial_rad;
   limb.mounted = mounted;
   limb.present = limb.moving || limb.inclination_valid;
   return limb;

@@ -182,6 +182,18 @@ TEST(Inclination, BeyondOneGIsARightAngleNotNan) {
   EXPECT_EQ(InclinationOf({12, -12, 0}).pitch_rad, -kPi / 2);
 }
 
+TEST(Inclination, OfAFasterSwingKeepsTheRotationAboutTheFront) {
+  for (const double rotation_rad : {-2.0, -0.7, 0.0, 0.7, 2.0}) {
+    const Vector3d level(std::sin(rotation_rad), 0, -std::cos(rotation_rad));
+    for (const double size_mps2 : {9.8, 13.0}) {
+      const Inclination found = InclinationOf(size_mps2 * (level + Vector3d(0, -0.4, 0)));
+      EXPECT_TRUE(found.axial_valid);
+      EXPECT_NEAR(found.axial_rad, rotation_rad, 1e-12);
+    }
+  }
+  EXPECT_FALSE(InclinationOf({0.5, -9.8, -0.5}).axial_valid) << "hangs straight down";
+}
+
 }  // namespace
 
 /// Hands that swing together are seen before their period is.

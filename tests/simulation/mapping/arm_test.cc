@@ -154,6 +154,26 @@ TEST(Arm, AHandThatWasAwayForLongMayHoldItsControllerOtherwise) {
   }
 }
 
+TEST(Arm, AGripThatARunHasShownHoldsInAWalkAndTheOtherWayRound) {
+  for (const double grip_deg : {-40.0, 0.0, 40.0}) {
+    for (const bool run_first : {true, false}) {
+      for (const double twist_deg : {-35.0, 0.0, 35.0}) {
+        Arms arms(false);
+        ArmInterface arm = NewArm();
+        ArmSwing first = run_first ? Running() : Walking();
+        ArmSwing then = run_first ? Walking() : Running();
+        for (ArmSwing* motion : {&first, &then}) {
+          motion->grip_left_rad = motion->grip_right_rad = DegreesToRadians(grip_deg);
+        }
+        Go(arms, arm, first, 4);
+        then.twist_rad = DegreesToRadians(twist_deg);
+        EXPECT_NEAR(Go(arms, arm, then, 4), TurnFor(twist_deg), 1e-9)
+            << grip_deg << ", twist " << twist_deg << ", run first: " << run_first;
+      }
+    }
+  }
+}
+
 TEST(Arm, ArmsThatSwingTogetherJump) {
   for (ArmSwing motion : {Walking(), Running()}) {
     motion.phase_rad = 0;
