@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <utility>
 
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <nlohmann/json.hpp>
 
 #include "clients/camera/light_checks.h"
@@ -21,6 +17,7 @@
 #include "common/net/address.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
 #include "common/wire/wire.h"
 
 namespace footing::camera {
@@ -191,14 +188,13 @@ Result<void> BlinkCalibration::EndAllLit() {
 
 namespace {
 
-constexpr std::chrono::seconds kDevicesWithin(5), kStepWithin(30);
+constexpr double kDevicesWithinS = 5, kStepWithinS = 30;
 
 class Calibrating {
  public:
   explicit Calibrating(const CalibrateOptions& options)
       : options_(options),
-        signals_(io_, SIGINT, SIGTERM),
-        limit_(io_),
+        program_end_(io_, [this] { End(Failure("stopped")); }),
         lights_(io_, options.sensor, [this] { OnDevices(); }) {}
 
   Result<BlinkReport> Run() {
@@ -206,12 +202,9 @@ class Calibrating {
                              [](const std::string& line) { log::Warning(line); });
     if (!source) return source.error();
     source_ = std::move(source).value();
-    signals_.async_wait([this](boost::system::error_code error, int) {
-      if (!error) End(Failure("stopped"));
-    });
     lights_.Start();
     log::Info("looking for PS Moves in footingd at " + options_.sensor.Text());
-    Limit(kDevicesWithin);
+    Limit(kDevicesWithinS);
     io_.run();
     if (!end_) return end_.error();
     return report_;
@@ -219,11 +212,8 @@ class Calibrating {
 
  private:
   /// Ends the calibration with Late() after `within`.
-  void Limit(std::chrono::seconds within) {
-    limit_.expires_after(within);
-    limit_.async_wait([this](boost::system::error_code error) {
-      if (!error) End(Late());
-    });
+  void Limit(double within_s) {
+    program_end_.After(within_s, [this] { End(Late()); });
   }
 
   Error Late() const {
@@ -268,7 +258,7 @@ class Calibrating {
   /// Sets all lights as the calibration wants them now.
   void Switch() {
     step_ = calibration_->steps();
-    Limit(kStepWithin);
+    Limit(kStepWithinS);
     if (const std::string message = calibration_->TakeMessage(); !message.empty())
       log::Info(message);
     unanswered_ = devices_.size();
@@ -304,14 +294,12 @@ class Calibrating {
     end_ = std::move(end);
     source_->Stop();
     lights_.Stop();
-    signals_.cancel();
-    limit_.cancel();
+    program_end_.cancel();
   }
 
   const CalibrateOptions& options_;
   boost::asio::io_context io_{1};
-  boost::asio::signal_set signals_;
-  boost::asio::steady_timer limit_;
+  service_manager::ProgramEnd program_end_;
   Lights lights_;
   std::unique_ptr<Source> source_;
   std::optional<BlinkCalibration> calibration_;

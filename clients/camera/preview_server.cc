@@ -249,10 +249,7 @@ void PreviewServer::Look() {
         std::make_shared<const std::string>(preview::Encode(painter_.Paint(seen_.Front())));
     for (const auto& viewer : viewers_) viewer->Send(message, now_ns);
   }
-  look_.expires_after(kLookEvery);
-  look_.async_wait([this](const error_code& error) {
-    if (!error) Look();
-  });
+  look_.After(kLookEvery, [this] { Look(); });
 }
 
 }  // namespace footing::camera

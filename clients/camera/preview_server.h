@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "clients/camera/light_checks.h"
 #include "common/camera/blobs.h"
@@ -16,6 +15,7 @@
 #include "common/frames/camera_file.h"
 #include "common/net/listener.h"
 #include "common/runtime/exchange.h"
+#include "common/runtime/timer.h"
 
 namespace footing::camera {
 
@@ -84,7 +84,7 @@ class PreviewServer {
   const std::int64_t cut_off_ns_;
   PreviewPainter painter_;
   boost::asio::io_context io_{1};
-  boost::asio::steady_timer look_;
+  timer::Timer look_;
   std::unique_ptr<transport::Listener> listener_;
   std::vector<std::shared_ptr<Viewer>> viewers_;
   std::thread thread_;

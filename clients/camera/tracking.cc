@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <utility>
 
 #include <Eigen/Dense>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "clients/camera/blink_calibration.h"
 #include "clients/camera/light_checks.h"
@@ -20,6 +17,8 @@
 #include "common/net/device_link.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::camera {
 namespace {
@@ -41,8 +40,6 @@ class Tracking {
         X_WC_(options.camera.X_WC),
         changed_at_(ChangedAt(options.camera_path)),
         io_(1),
-        signals_(io_, SIGINT, SIGTERM),
-        limit_(io_),
         look_(io_),
         link_(io_, {.to = options.to,
                     .max_queued_frames = kMaxQueuedFrames,
@@ -64,15 +61,7 @@ class Tracking {
     if (!source) return source.error();
     source_ = std::move(source).value();
     if (auto opened = OpenPreview(); !opened) return opened.error();
-    signals_.async_wait([this](boost::system::error_code error, int) {
-      if (!error) End({});
-    });
-    if (options_.seconds > 0) {
-      limit_.expires_after(std::chrono::milliseconds(std::llround(1e3 * options_.seconds)));
-      limit_.async_wait([this](boost::system::error_code error) {
-        if (!error) EndInTime({});
-      });
-    }
+    program_end_.After(options_.seconds, [this] { EndInTime({}); });
     link_.Start();
     const auto& spheres = options_.camera.spheres;
     if (std::any_of(spheres.begin(), spheres.end(), [](const auto& one) { return one.led_rgb; })) {
@@ -117,9 +106,7 @@ class Tracking {
   /// Takes a new pose from the camera file, as a calibration writes it.
   void LookAtTheFile() {
     if (options_.camera_path.empty() || ended_) return;
-    look_.expires_after(kLookAtTheFileEvery);
-    look_.async_wait([this](boost::system::error_code error) {
-      if (error) return;
+    look_.After(kLookAtTheFileEvery, [this] {
       const auto at = ChangedAt(options_.camera_path);
       if (std::exchange(changed_at_, at) != at) {
         const auto camera = frames::ReadCameraFile(options_.camera_path);
@@ -184,8 +171,7 @@ class Tracking {
     source_->Stop();
     link_.Stop("footing-camera ends");
     if (lights_) lights_->Stop();
-    signals_.cancel();
-    limit_.cancel();
+    program_end_.cancel();
     look_.cancel();
   }
 
@@ -193,8 +179,8 @@ class Tracking {
   std::optional<Eigen::Isometry3d> X_WC_;
   std::filesystem::file_time_type changed_at_;
   boost::asio::io_context io_;
-  boost::asio::signal_set signals_;
-  boost::asio::steady_timer limit_, look_;
+  service_manager::ProgramEnd program_end_{io_, [this] { End({}); }};
+  timer::Timer look_;
   device_link::DeviceLink link_;
   sphere::Finder finder_;
   LightChecks checks_;

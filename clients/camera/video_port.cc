@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <memory>
@@ -18,8 +17,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 #include <boost/asio/posix/stream_descriptor.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <nlohmann/json.hpp>
 
 #include "common/camera/fit_lens.h"
@@ -28,6 +25,8 @@
 #include "common/runtime/clock.h"
 #include "common/runtime/files.h"
 #include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::camera {
 
@@ -67,22 +66,15 @@ class FolderSource : public Source {
   void Start(OnFrame on_frame, OnEnd on_end) override {
     on_frame_ = std::move(on_frame);
     on_end_ = std::move(on_end);
-    due_ = std::chrono::steady_clock::now();
+    due_ = timer::Now();
     Wait();
   }
 
-  void Stop() override {
-    is_stopped_ = true;
-    timer_.cancel();
-  }
+  void Stop() override { timer_.cancel(); }
 
  private:
   void Wait() {
-    timer_.expires_at(due_);
-    timer_.async_wait([this](boost::system::error_code error) {
-      // It may have expired before Stop() cancelled it.
-      if (!error && !is_stopped_) Deliver();
-    });
+    timer_.At(due_, [this] { Deliver(); });
   }
 
   void Deliver() {
@@ -96,19 +88,18 @@ class FolderSource : public Source {
     // At the camera's rate; what could not be had in time is not made up for. Before the frame is
     // handed on, which may end in Stop().
     due_ = std::max(due_ + std::chrono::nanoseconds(std::llround(1e9 / camera_.rate_hz)),
-                    std::chrono::steady_clock::now());
+                    timer::Now());
     Wait();
     on_frame_(*frame, exposed_ns);
   }
 
-  boost::asio::steady_timer timer_;
+  timer::Timer timer_;
   const std::vector<std::string> files_;
   const frames::CameraFile camera_;
   const bool repeats_;
   OnFrame on_frame_;
   OnEnd on_end_;
   std::size_t next_ = 0;
-  bool is_stopped_ = false;
   std::chrono::steady_clock::time_point due_;
 };
 
@@ -628,8 +619,7 @@ class LensMeasurement {
  public:
   explicit LensMeasurement(const LensOptions& options)
       : options_(options),
-        signals_(io_, SIGINT, SIGTERM),
-        limit_(io_),
+        program_end_(io_, [this] { End(Failure("stopped")); }),
         collector_(options.views, options.frames.folder.empty()) {}
 
   Result<LensReport> Run() {
@@ -637,13 +627,7 @@ class LensMeasurement {
                              [](const std::string& line) { log::Warning(line); });
     if (!source) return source.error();
     source_ = std::move(source).value();
-    signals_.async_wait([this](boost::system::error_code error, int) {
-      if (!error) End(Failure("stopped"));
-    });
-    limit_.expires_after(std::chrono::milliseconds(std::llround(1e3 * options_.seconds)));
-    limit_.async_wait([this](boost::system::error_code error) {
-      if (!error) End({});
-    });
+    program_end_.After(options_.seconds, [this] { End({}); });
     source_->Start([this](const frames::Frame& frame, std::int64_t) { Take(frame); },
                    [this](Result<void> end) { End(std::move(end)); });
     io_.run();
@@ -672,14 +656,12 @@ class LensMeasurement {
     if (std::exchange(ended_, true)) return;
     end_ = std::move(end);
     source_->Stop();
-    signals_.cancel();
-    limit_.cancel();
+    program_end_.cancel();
   }
 
   const LensOptions& options_;
   boost::asio::io_context io_{1};
-  boost::asio::signal_set signals_;
-  boost::asio::steady_timer limit_;
+  service_manager::ProgramEnd program_end_;
   std::unique_ptr<Source> source_;
   lens_calibration::ViewCollector collector_;
   std::size_t frames_ = 0;

@@ -1,8 +1,6 @@
 #include "clients/ctl/connection.h"
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <csignal>
 #include <optional>
 #include <utility>
 
@@ -10,6 +8,7 @@
 #include "common/net/address.h"
 #include "common/net/client.h"
 #include "common/runtime/clock.h"
+#include "common/runtime/service_manager.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {
@@ -30,16 +29,13 @@ std::string Remedy(const std::string& link) {
 
 class Connection::Implementation {
  public:
-  explicit Implementation(ConnectionOptions options) : signals_(io_, SIGINT, SIGTERM) {
+  explicit Implementation(ConnectionOptions options) {
     dialled_.address = options.address;
     dialled_.client_name = "footing-ctl";
     dialled_.role = options.role;
     dialled_.channels = std::move(options.channels);
     dialled_.max_hz = options.max_hz;
     dialled_.queue_ticks = kQueueTicks;
-    signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) interrupted_ = true;
-    });
     Connect();
   }
 
@@ -88,7 +84,7 @@ class Connection::Implementation {
   }
 
   Waited RunUntil(const std::function<bool()>& condition, double within_s) {
-    return timer::RunUntil(io_, condition, within_s, [this] { return interrupted_; });
+    return timer::RunUntil(io_, condition, within_s, [this] { return end_.asked(); });
   }
 
   void OnTick(const v1::Tick& tick) {
@@ -110,7 +106,7 @@ class Connection::Implementation {
 
   transport::ClientOptions dialled_;
   boost::asio::io_context io_{1};
-  boost::asio::signal_set signals_;
+  service_manager::ProgramEnd end_{io_};
   std::optional<transport::Client> client_;
   v1::Welcome welcome_;
   std::vector<stream::DeviceStatus> status_;
@@ -123,7 +119,6 @@ class Connection::Implementation {
   std::int64_t server_ns_ = 0;
   bool live_ = false;
   bool refused_ = false;
-  bool interrupted_ = false;
 };
 
 Connection::Connection(std::unique_ptr<Implementation> implementation)
@@ -149,7 +144,7 @@ std::int64_t Connection::server_ns() const { return implementation_->server_ns_;
 bool Connection::live() const { return implementation_->live_; }
 const std::string& Connection::link() const { return implementation_->link_; }
 std::string Connection::TakeNotice() { return std::exchange(implementation_->notice_, {}); }
-bool Connection::interrupted() const { return implementation_->interrupted_; }
+bool Connection::interrupted() const { return implementation_->end_.asked(); }
 
 void Connection::set_on_tick(std::function<void(const v1::Tick&)> on_tick) {
   implementation_->on_tick_ = std::move(on_tick);

@@ -2,13 +2,10 @@
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <iostream>
 #include <optional>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <nlohmann/json.hpp>
 
 #include "clients/game/rules/director.h"
@@ -17,6 +14,8 @@
 #include "common/net/address.h"
 #include "common/net/client.h"
 #include "common/runtime/clock.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
 
@@ -280,17 +279,13 @@ class Host {
   explicit Host(const HostOptions& options)
       : options_(options),
         director_(options.game),
-        signals_(io_, SIGINT, SIGTERM),
+        signals_(io_, [this] { End(); }),
         line_(io_),
-        end_(io_),
         started_ns_(clock::MonotonicNs()),
         sensor_(io_, SensorOptions(), SensorHandlers()),
         simulation_(io_, SimulationOptions(), SimulationHandlers()) {}
 
   Result<Report> Run() {
-    signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) End();
-    });
     sensor_.Start();
     simulation_.Start();
     LineLater();
@@ -415,9 +410,7 @@ class Host {
   }
 
   void LineLater() {
-    line_.expires_after(kLine);
-    line_.async_wait([this](const boost::system::error_code& error) {
-      if (error) return;
+    line_.After(kLine, [this] {
       std::ostream& out = options_.text ? std::cout : std::cerr;
       out << Line() << std::endl;
       if (options_.seconds > 0 && PassedS() >= options_.seconds) return End();
@@ -427,17 +420,18 @@ class Host {
 
   void End() {
     if (std::exchange(ending_, true)) return;
-    line_.cancel();
     signals_.cancel();
     sensor_.Stop();
     v1::Command leave;
     leave.mutable_set_game()->set_leave(true);
-    simulation_.Send(std::move(leave), [this](const v1::CommandResult&) { end_.cancel(); });
-    end_.expires_after(kLeaveWithin);
-    end_.async_wait([this](const boost::system::error_code&) {
-      simulation_.Stop();
-      io_.stop();
-    });
+    simulation_.Send(std::move(leave), [this](const v1::CommandResult&) { Leave(); });
+    line_.After(kLeaveWithin, [this] { Leave(); });
+  }
+
+  void Leave() {
+    line_.cancel();
+    simulation_.Stop();
+    io_.stop();
   }
 
   const HostOptions& options_;
@@ -447,8 +441,8 @@ class Host {
   std::uint32_t device_ = 0;
   std::int64_t inclined_ns_ = 0;
   asio::io_context io_{1};
-  asio::signal_set signals_;
-  asio::steady_timer line_, end_;
+  service_manager::ProgramEnd signals_;
+  timer::Timer line_;
   std::int64_t started_ns_;
   std::string link_ = "not connected", sensor_link_ = link_;
   bool welcomed_ = false, sensed_ = false;  ///< By footing-sim; by footingd.

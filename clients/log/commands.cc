@@ -13,7 +13,6 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <nlohmann/json.hpp>
 
 #include "clients/log/contents.h"
@@ -35,6 +34,7 @@
 #include "common/recording/stream_recorder.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/files.h"
+#include "common/runtime/service_manager.h"
 #include "common/runtime/timer.h"
 #include "common/wire/wire.h"
 #include "footing/v1/sensor.pb.h"
@@ -512,20 +512,14 @@ Result<nlohmann::ordered_json> RunServe(const ServeOptions& options) {
               << " s, on " << server.ListeningOn(i).Text() << " once a client connects"
               << std::endl;
   }
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   Result<void> ended;
   bool complete = false;
-  const auto end = [&](const std::string& reason) {
-    server.Stop(reason);
-    signals.cancel();
-  };
-  signals.async_wait([&](const boost::system::error_code& error, int) {
-    if (!error) end("footing-log is being stopped");
-  });
+  service_manager::ProgramEnd end(io, [&] { server.Stop("footing-log is being stopped"); });
   server.Start([&](const Result<void>& result) {
     ended = result;
     complete = result.ok();
-    end(result ? "the recording has ended" : result.error().message);
+    server.Stop(result ? "the recording has ended" : result.error().message);
+    end.cancel();
   });
   io.run();
   if (!ended) return InvalidData(options.file + ": " + ended.error().message);
@@ -713,8 +707,8 @@ class Recording {
         writer_(std::move(writer)),
         flush_(io),
         progress_(io),
-        end_(io),
-        signals_(io, SIGINT, SIGTERM) {}
+        catch_up_(io),
+        end_(io, [this] { CatchUp(clock::MonotonicNs()); }) {}
 
   Result<RecordReport> Run() {
     Keep(
@@ -723,16 +717,7 @@ class Recording {
     if (!written_) return written_.error();
     for (const transport::Address& address : options_.addresses) Link(address);
     for (const auto& link : links_) link->Start();
-    signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) CatchUp(clock::MonotonicNs());
-    });
-    if (options_.seconds > 0) {
-      end_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
-          std::chrono::duration<double>(options_.seconds)));
-      end_.async_wait([this](const boost::system::error_code& error) {
-        if (!error) CatchUp(clock::MonotonicNs());
-      });
-    }
+    end_.After(options_.seconds, [this] { CatchUp(clock::MonotonicNs()); });
     FlushLater();
     ProgressLater();
     io_.run();
@@ -775,9 +760,7 @@ class Recording {
   }
 
   void FlushLater() {
-    flush_.expires_after(kFlushPeriod);
-    flush_.async_wait([this](const boost::system::error_code& error) {
-      if (error) return;
+    flush_.After(kFlushPeriod, [this] {
       const std::int64_t now_ns = clock::MonotonicNs();
       if (!writer_.pending()) written_down_ns_ = now_ns;
       if (now_ns - written_down_ns_ >= recording::kLongestUnwrittenNs) {
@@ -789,9 +772,7 @@ class Recording {
   }
 
   void ProgressLater() {
-    progress_.expires_after(kProgressPeriod);
-    progress_.async_wait([this](const boost::system::error_code& error) {
-      if (error) return;
+    progress_.After(kProgressPeriod, [this] {
       std::cerr << writer_.path() << ": " << writer_.statistics().message_count << " messages";
       for (const auto& link : links_) {
         const recording::StreamRecorder& recorder = link->recorder();
@@ -810,10 +791,8 @@ class Recording {
     const bool has_all = std::all_of(links_.begin(), links_.end(),
                                      [&](const auto& link) { return link->HasAllUntil(until_ns); });
     if (has_all || clock::MonotonicNs() - until_ns > kLongestCatchUpNs) return End();
-    end_.expires_after(kCatchUpPeriod);
-    end_.async_wait([this, until_ns](const boost::system::error_code& error) {
-      if (!error) CatchUp(until_ns);
-    });
+    end_.cancel();
+    catch_up_.After(kCatchUpPeriod, [this, until_ns] { CatchUp(until_ns); });
   }
 
   void End() {
@@ -863,8 +842,8 @@ class Recording {
   std::int64_t written_down_ns_ = clock::MonotonicNs();
   timer::Timer flush_;
   timer::Timer progress_;
-  timer::Timer end_;
-  asio::signal_set signals_;
+  timer::Timer catch_up_;
+  service_manager::ProgramEnd end_;
 };
 
 }  // namespace

@@ -232,9 +232,7 @@ void Edge::End(const std::string& reason) {
 }
 
 void Edge::ArmPulse() {
-  pulse_.expires_after(kPulse);
-  pulse_.async_wait([this](const boost::system::error_code& error) {
-    if (error) return;
+  pulse_.After(kPulse, [this] {
     OnPulse();
     ArmPulse();
   });

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -34,10 +33,8 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
       : io_(io),
         options_(std::move(options)),
         handlers_(std::move(handlers)),
-        retry_(io),
-        pulse_(io),
-        backoff_(options_.backoff_min_s, options_.backoff_max_s),
-        random_(std::random_device()()) {
+        redial_(io, options_.backoff_min_s, options_.backoff_max_s),
+        pulse_(io) {
     parsed_.on_info = [this](const nats::ServerInfo& info) { OnInfo(info); };
     parsed_.on_message = [this](const nats::Message& message) { handlers_.on_message(message); };
     parsed_.on_ping = [this] { Queue("PONG\r\n"); };
@@ -56,7 +53,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
   void Stop() {
     started_ = false;
     ++attempt_;
-    retry_.cancel();
+    redial_.cancel();
     pulse_.cancel();
     if (connection_) connection_->socket.Close();
     connection_.reset();
@@ -151,7 +148,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
   void OnPong() {
     if (!connection_ || connection_->up) return;
     connection_->up = was_up_ = true;
-    backoff_.Reset();
+    redial_.Reset();
     handlers_.on_up();
   }
 
@@ -176,10 +173,9 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
   }
 
   void ArmPulse() {
-    pulse_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(options_.ping_interval_s)));
-    pulse_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-      const auto self = weak.lock();
-      if (!error && self && self->connection_) self->OnPulse();
+    pulse_.After(options_.ping_interval_s, [this] {
+      const auto self = shared_from_this();  // A handler may let the link go.
+      if (connection_) OnPulse();
     });
   }
 
@@ -202,11 +198,9 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
 
   void Retry(const std::string& why) {
     if (!started_) return;
-    const double random = std::uniform_real_distribution<double>(0, 1)(random_);
-    retry_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(backoff_.Next(random))));
-    retry_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-      const auto self = weak.lock();
-      if (!error && self && self->started_) self->Dial();
+    redial_.Later([this] {
+      const auto self = shared_from_this();  // A handler may let the link go.
+      if (started_) Dial();
     });
     handlers_.on_down(why);
   }
@@ -215,10 +209,8 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
   NatsOptions options_;
   NatsLinkHandlers handlers_;
   nats::Handlers parsed_;
-  timer::Timer retry_;
+  transport::Redial redial_;
   timer::Timer pulse_;
-  transport::Backoff backoff_;
-  std::mt19937 random_;
   bool started_ = false;
   std::uint64_t attempt_ = 0;
   std::vector<std::string> subjects_;  ///< The subscription's number is its place, from 1.
@@ -257,9 +249,8 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
       : io_(io),
         options_(std::move(options)),
         handlers_(std::move(handlers)),
-        timer_(io),
-        backoff_(kBackoffMinS, kBackoffMaxS),
-        random_(std::random_device()()) {
+        patience_(io),
+        redial_(io, kBackoffMinS, kBackoffMaxS) {
     mosquitto_lib_init();
   }
   ~Implementation() { mosquitto_lib_cleanup(); }
@@ -275,7 +266,8 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
 
   void Stop() {
     started_ = false;
-    timer_.cancel();
+    patience_.cancel();
+    redial_.cancel();
     LetGo();
   }
 
@@ -332,10 +324,9 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
       const int number = errno;
       return OnDown(code == MOSQ_ERR_ERRNO ? std::strerror(number) : mosquitto_strerror(code));
     }
-    timer_.expires_after(kPatience);
-    timer_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-      const auto self = weak.lock();
-      if (!error && self && !self->up_) self->OnDown("it does not answer");
+    patience_.After(kPatience, [this] {
+      const auto self = shared_from_this();  // A handler may let the link go.
+      if (!up_) OnDown("it does not answer");
     });
   }
 
@@ -377,20 +368,19 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
 
   void OnConnect(int code) {
     if (code != 0) return OnDown(mosquitto_connack_string(code));
-    timer_.cancel();
+    patience_.cancel();
     up_ = was_up_ = true;
-    backoff_.Reset();
+    redial_.Reset();
     handlers_.on_up();
   }
 
   void OnDown(const std::string& why) {
     LetGo();
     if (!started_) return;
-    const double random = std::uniform_real_distribution<double>(0, 1)(random_);
-    timer_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(backoff_.Next(random))));
-    timer_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-      const auto self = weak.lock();
-      if (!error && self && self->started_) self->Connect();
+    patience_.cancel();
+    redial_.Later([this] {
+      const auto self = shared_from_this();  // A handler may let the link go.
+      if (started_) Connect();
     });
     handlers_.on_down(options_.host + ":" + std::to_string(options_.port) + ": " + why);
   }
@@ -398,9 +388,8 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
   boost::asio::io_context& io_;
   MqttOptions options_;
   MqttLinkHandlers handlers_;
-  timer::Timer timer_;  ///< Until the next try, or until this one has failed.
-  transport::Backoff backoff_;
-  std::mt19937 random_;
+  timer::Timer patience_;  ///< Until this try has failed.
+  transport::Redial redial_;
   bool started_ = false;
   std::uint64_t attempt_ = 0;
   std::unique_ptr<Client> client_;

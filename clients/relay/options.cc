@@ -8,11 +8,11 @@
 #include <utility>
 
 #include <unistd.h>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "clients/relay/login.h"
 #include "common/net/monitoring.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::relay {
 
@@ -61,23 +61,16 @@ Result<std::unique_ptr<monitoring::MetricsEndpoint>> ServeMetrics(
 
 RunEnd RunUntilStopped(boost::asio::io_context& io, double seconds,
                        const std::function<void(std::function<void()>)>& end) {
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  boost::asio::steady_timer timer(io);
+  timer::Timer patience(io);
   std::optional<RunEnd> ended;
-  const auto stop = [&](const boost::system::error_code& error, RunEnd why) {
-    if (error || ended) return;
+  const auto stop = [&](RunEnd why) {
+    if (ended) return;
     ended = why;
-    timer.expires_after(std::chrono::seconds(2));
-    timer.async_wait([&](const boost::system::error_code&) { io.stop(); });
+    patience.After(std::chrono::seconds(2), [&] { io.stop(); });
     end([&io] { io.stop(); });
   };
-  signals.async_wait(
-      [&](const boost::system::error_code& error, int) { stop(error, RunEnd::kStopped); });
-  if (seconds > 0) {
-    timer.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
-        std::chrono::duration<double>(seconds)));
-    timer.async_wait([&](const boost::system::error_code& error) { stop(error, RunEnd::kTimeUp); });
-  }
+  service_manager::ProgramEnd program(io, [&] { stop(RunEnd::kStopped); });
+  program.After(seconds, [&] { stop(RunEnd::kTimeUp); });
   io.run();
   return ended.value_or(RunEnd::kStopped);
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <csignal>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,8 +10,6 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "clients/skeleton/sender.h"
 #include "clients/skeleton/web_server.h"
@@ -23,6 +20,8 @@
 #include "common/net/socket.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::skeleton {
 namespace {
@@ -39,12 +38,7 @@ constexpr int kReceiveBytes = 1 << 20;             // Size of the kernel's buffe
 class Receiver {
  public:
   explicit Receiver(const ReceiverOptions& options)
-      : options_(options),
-        tracker_(options.tracker),
-        signals_(io_, SIGINT, SIGTERM),
-        socket_(io_),
-        flush_(io_),
-        end_(io_) {
+      : options_(options), tracker_(options.tracker), socket_(io_), flush_(io_) {
     if (!options.to) return;
     link_.emplace(io_,
                   device_link::Options{
@@ -68,20 +62,13 @@ class Receiver {
     log::Info("listening for skeletons on UDP " + at.address().to_string() + ":" +
               std::to_string(at.port()));
     if (const auto served = Serve(); !served) return served.error();
-    signals_.async_wait([this](const boost::system::error_code& failed, int) {
-      if (!failed) End();
-    });
     if (link_) link_->Start();
     began_ns_ = clock::MonotonicNs();
     began_cpu_ns_ = clock::ThreadCpuNs();
-    if (options_.seconds > 0) {
-      end_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(options_.seconds)));
-      end_.async_wait([this](const boost::system::error_code& failed) {
-        if (failed) return;
-        if (link_ && !link_->was_open()) published_ = device_link::NoFootingd(*options_.to);
-        End();
-      });
-    }
+    end_.After(options_.seconds, [this] {
+      if (link_ && !link_->was_open()) published_ = device_link::NoFootingd(*options_.to);
+      End();
+    });
     ReceiveLater();
     FlushLater();
     io_.run();
@@ -152,9 +139,7 @@ class Receiver {
   }
 
   void FlushLater() {
-    flush_.expires_after(kFlush);
-    flush_.async_wait([this](const boost::system::error_code& failed) {
-      if (failed || ended_ns_ != 0) return;  // A timer that was due is not cancelled any more.
+    flush_.After(kFlush, [this] {
       const std::int64_t now_ns = clock::MonotonicNs();
       tracker_.Flush(now_ns, clock::WallNs(), observations_);
       Publish(now_ns);
@@ -179,19 +164,18 @@ class Receiver {
     socket_.close(ignored);
     flush_.cancel();
     end_.cancel();
-    signals_.cancel();
     if (link_) link_->Stop("stopped");
     if (!web_) return;
-    end_.expires_after(kPagesLeave);  // Pages stay connected for as long as they are shown.
-    end_.async_wait([this](const boost::system::error_code&) { io_.stop(); });
+    // Pages stay connected for as long as they are shown.
+    flush_.After(kPagesLeave, [this] { io_.stop(); });
   }
 
   const ReceiverOptions options_;
   asio::io_context io_{1};
   Tracker tracker_;
-  asio::signal_set signals_;
+  service_manager::ProgramEnd end_{io_, [this] { End(); }};
   asio::ip::udp::socket socket_;
-  asio::steady_timer flush_, end_;
+  timer::Timer flush_;
   std::optional<device_link::DeviceLink> link_;
   std::unique_ptr<WebServer> web_;
   std::array<std::uint8_t, osc::kMostPacketBytes> bytes_;

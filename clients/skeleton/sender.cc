@@ -1,16 +1,15 @@
 #include "clients/skeleton/sender.h"
 
 #include <chrono>
-#include <csignal>
 #include <string>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "common/base/units.h"
 #include "common/net/socket.h"
 #include "common/runtime/clock.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::skeleton {
 namespace {
@@ -20,18 +19,14 @@ namespace asio = boost::asio;
 class Sender {
  public:
   Sender(const std::vector<ClipFrame>& clip, const SenderOptions& options)
-      : clip_(clip), options_(options), signals_(io_, SIGINT, SIGTERM), socket_(io_), next_(io_) {}
+      : clip_(clip), options_(options), socket_(io_), next_(io_) {}
 
   Result<nlohmann::ordered_json> Run() {
     boost::system::error_code error;
     socket_.open(options_.to.protocol(), error);
     if (!error) socket_.connect(options_.to, error);
     if (error) return Failure("cannot send to UDP: " + transport::MessageOf(error));
-    signals_.async_wait([this](const boost::system::error_code& failed, int) {
-      stopped_ = !failed;
-      next_.cancel();
-    });
-    began_ = std::chrono::steady_clock::now();
+    began_ = timer::Now();
     began_ns_ = clock::MonotonicNs();
     SendLater();
     io_.run();
@@ -61,12 +56,10 @@ class Sender {
 
   void SendLater() {
     if (IsOver()) {
-      signals_.cancel();
+      end_.cancel();
       return;
     }
-    next_.expires_at(began_ + std::chrono::nanoseconds(DueNs(frame_)));
-    next_.async_wait([this](const boost::system::error_code& failed) {
-      if (failed || stopped_) return;
+    next_.At(began_ + std::chrono::nanoseconds(DueNs(frame_)), [this] {
       Send();
       ++frame_;
       SendLater();
@@ -90,14 +83,13 @@ class Sender {
   const std::vector<ClipFrame>& clip_;
   const SenderOptions& options_;
   asio::io_context io_{1};
-  asio::signal_set signals_;
+  service_manager::ProgramEnd end_{io_, [this] { next_.cancel(); }};
   asio::ip::udp::socket socket_;
-  asio::steady_timer next_;
-  std::chrono::steady_clock::time_point began_;
+  timer::Timer next_;
+  timer::TimePoint began_;
   std::int64_t began_ns_ = 0;
   std::size_t frame_ = 0;
   std::uint64_t packets_ = 0, bytes_ = 0;
-  bool stopped_ = false;
 };
 
 }  // namespace

@@ -235,10 +235,7 @@ bool SetupPerson::Perform(const stream::SetupPrompt& prompt) {
   const auto lines = LinesFor(prompt.gesture, prompt.role);
   for (const std::string& line : lines) body_->Do(line);
   if (prompt.gesture == Gesture::kTakeSteps) {
-    steps_.expires_after(kThreeSteps);
-    steps_.async_wait([body = body_](const boost::system::error_code& error) {
-      if (!error) body->Do("still");
-    });
+    steps_.After(kThreeSteps, [body = body_] { body->Do("still"); });
   }
   // The devices are on from the beginning.
   return !lines.empty() || prompt.gesture == Gesture::kSwitchOn;
@@ -246,9 +243,7 @@ bool SetupPerson::Perform(const stream::SetupPrompt& prompt) {
 
 void SetupPerson::End() {
   item_.clear();
-  over_.expires_after(kSetupOver);
-  over_.async_wait([this](const boost::system::error_code& error) {
-    if (error) return;
+  over_.After(kSetupOver, [this] {
     ++record_->setups;
     log::Info("the setup has ended");
     on_end_();

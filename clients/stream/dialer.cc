@@ -480,12 +480,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
 
   /// Does something at a time of the motion, by one of the clocks: of a slot, a source or the end.
   void At(std::size_t slot, double time_s, std::function<void()> action) {
-    clocks_[slot]->expires_at(start_ + std::chrono::nanoseconds(SecondsToNanoseconds(time_s)));
-    clocks_[slot]->async_wait(
-        [weak = weak_from_this(), action = std::move(action)](boost::system::error_code error) {
-          const auto self = weak.lock();
-          if (self && !error && self->link_.open() && !self->stopped_) action();
-        });
+    clocks_[slot]->At(start_ + std::chrono::nanoseconds(SecondsToNanoseconds(time_s)),
+                      [this, action = std::move(action)] {
+                        if (link_.open() && !stopped_) action();
+                      });
   }
 
   void SendAttach(std::size_t slot) {

@@ -1,17 +1,16 @@
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
 
 #include "clients/stream/boards.h"
 #include "clients/stream/body_stage.h"
 #include "clients/stream/dialer.h"
 #include "clients/stream/plan.h"
 #include "clients/stream/samples.h"
-#include "common/base/units.h"
 #include "common/cli/cli.h"
 #include "common/net/address.h"
 #include "common/net/device_link.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
 #include "common/runtime/timer.h"
 
 namespace {
@@ -32,32 +31,24 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
   if (!to) return cli::Report(to.error());
   if (const auto done = clock::FollowTimekeeper(); !done) return cli::Report(done.error());
   boost::asio::io_context io(1);
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  timer::Timer limit(io);
   bool came_in_time = true;
   std::unique_ptr<stream_client::Dialer> dialer;
   std::unique_ptr<transport::Client> eyes;
+  std::optional<service_manager::ProgramEnd> program_end;
   const End end = [&](const std::string& why) {
     log::Info(why);
     dialer->Stop(why);
     if (eyes) eyes->Stop();
-    signals.cancel();
-    limit.cancel();
+    program_end->cancel();
   };
   if (beside) eyes = beside(io, end);
   dialer = std::make_unique<stream_client::Dialer>(
       io, stream_client::DialerOptions{*to, common.rate_scale}, std::move(plan).value(),
       [&] { end("the motion has ended"); });
-  if (common.seconds > 0) {
-    limit.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(common.seconds)));
-    limit.async_wait([&](boost::system::error_code error) {
-      if (error) return;
-      came_in_time = dialer->has_attached();
-      end("the time is up");
-    });
-  }
-  signals.async_wait([&](boost::system::error_code error, int) {
-    if (!error) end("stopped");
+  program_end.emplace(io, [&] { end("stopped"); });
+  program_end->After(common.seconds, [&] {
+    came_in_time = dialer->has_attached();
+    end("the time is up");
   });
   dialer->Start();
   timer::Run(io);

@@ -12,8 +12,6 @@
 #include <thread>
 #include <utility>
 
-#include <boost/asio/steady_timer.hpp>
-
 #include "clients/study/plan/phases.h"
 #include "clients/study/plan/ranges.h"
 #include "clients/study/plan/screen_message.h"
@@ -34,6 +32,7 @@
 #include "common/recording/recording_writer.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/files.h"
+#include "common/runtime/timer.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
 
@@ -786,10 +785,7 @@ class ScreenClient {
   }
 
   void DialLater() {
-    timer_.expires_after(kDialEvery);
-    timer_.async_wait([this](const boost::system::error_code& error) {
-      if (!error) Dial();
-    });
+    timer_.After(kDialEvery, [this] { Dial(); });
   }
 
   void OnFrame(std::string_view payload) {
@@ -835,7 +831,7 @@ class ScreenClient {
 
   Console& console_;
   const transport::Address address_;
-  boost::asio::steady_timer timer_;
+  timer::Timer timer_;
   std::unique_ptr<transport::FramedConnection> connection_;
   screen::Shown shown_;
 };

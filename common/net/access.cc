@@ -31,13 +31,9 @@ v1::Role RoleNamed(const std::string& name) {
   return v1::ROLE_UNSPECIFIED;
 }
 
-void WarnAndWait(const std::shared_ptr<timer::Timer>& timer) {
+void WarnAndWait(timer::Timer& timer) {
   log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
-  timer->expires_after(std::chrono::hours(1));
-  timer->async_wait([weak = std::weak_ptr(timer)](const boost::system::error_code& error) {
-    const auto still_there = weak.lock();
-    if (!error && still_there) WarnAndWait(still_there);
-  });
+  timer.After(std::chrono::hours(1), [&timer] { WarnAndWait(timer); });
 }
 
 /// Who may write the file may let anybody in.
@@ -154,7 +150,7 @@ Result<std::vector<std::string>> AccessSettings::Reapply(Server& server) const {
 
 std::shared_ptr<timer::Timer> WarnOfInsecureLan(boost::asio::io_context& io) {
   auto timer = std::make_shared<timer::Timer>(io);
-  WarnAndWait(timer);
+  WarnAndWait(*timer);
   return timer;
 }
 

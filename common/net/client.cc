@@ -1,9 +1,7 @@
 #include "common/net/client.h"
 
-#include <chrono>
 #include <cstdlib>
 #include <optional>
-#include <random>
 #include <string_view>
 #include <utility>
 
@@ -29,10 +27,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
       : io_(io),
         options_(std::move(options)),
         handlers_(std::move(handlers)),
-        retry_(io),
-        pulse_(io),
-        backoff_(options_.backoff_min_s, options_.backoff_max_s),
-        random_(std::random_device()()) {}
+        redial_(io, options_.backoff_min_s, options_.backoff_max_s),
+        pulse_(io) {}
 
   void Start() {
     if (started_) return;
@@ -44,7 +40,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     started_ = false;
     subscribed_ = false;
     ++attempt_;  // A dial under way is forgotten.
-    retry_.cancel();
+    redial_.cancel();
     pulse_.cancel();
     connection_.reset();
     wish_.reset();
@@ -76,10 +72,6 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   };
 
   std::int64_t NowNs() const { return options_.now_ns ? options_.now_ns() : clock::MonotonicNs(); }
-
-  static std::chrono::nanoseconds Duration(double seconds) {
-    return std::chrono::nanoseconds(SecondsToNanoseconds(seconds));
-  }
 
   void Connect() {
     Dial(io_, options_.address,
@@ -173,7 +165,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
 
   void OnSubscribed() {
     subscribed_ = true;
-    backoff_.Reset();
+    redial_.Reset();
     SetState(LinkState::kLive, LiveText());
   }
 
@@ -198,10 +190,9 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void ArmPulse() {
-    pulse_.expires_after(Duration(options_.ping_interval_s));
-    pulse_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-      const auto self = weak.lock();
-      if (!error && self && self->connection_) self->OnPulse();
+    pulse_.After(options_.ping_interval_s, [this] {
+      const auto self = shared_from_this();  // A handler may destroy the client.
+      if (connection_) OnPulse();
     });
   }
 
@@ -243,14 +234,15 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
 
   void Retry(LinkState state, const std::string& why) {
     if (!started_) return;
-    const double random = std::uniform_real_distribution<double>(0, 1)(random_);
-    const double wait_s = state == LinkState::kRefused ? options_.refused_wait_s * (1 + random) / 2
-                                                       : backoff_.Next(random);
-    retry_.expires_after(Duration(wait_s));
-    retry_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-      const auto self = weak.lock();
-      if (!error && self && self->started_) self->Connect();
-    });
+    const auto connect = [this] {
+      const auto self = shared_from_this();  // A handler may destroy the client.
+      if (started_) Connect();
+    };
+    if (state == LinkState::kRefused) {
+      redial_.Within(options_.refused_wait_s, connect);
+    } else {
+      redial_.Later(connect);
+    }
     SetState(state, why);
   }
 
@@ -269,10 +261,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   const ClientOptions options_;
   ClientHandlers handlers_;
   std::optional<FramedConnection> connection_;
-  timer::Timer retry_;
+  Redial redial_;
   timer::Timer pulse_;
-  Backoff backoff_;
-  std::mt19937_64 random_;
   bool started_ = false;
   bool subscribed_ = false;
   std::uint64_t attempt_ = 0;

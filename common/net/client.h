@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "common/net/address.h"
 #include "common/net/known_servers.h"
 #include "common/net/tls_context.h"
+#include "common/runtime/timer.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::transport {
@@ -221,6 +223,30 @@ class Backoff {
   double min_s_;
   double max_s_;
   double next_s_;
+};
+
+/// Waits between the tries of one link.
+class Redial {
+ public:
+  Redial(boost::asio::io_context& io, double min_s, double max_s)
+      : timer_(io), backoff_(min_s, max_s), random_(std::random_device()()) {}
+
+  /// Calls `dial` on the io_context after the next wait of Backoff.
+  void Later(std::function<void()> dial) { timer_.After(backoff_.Next(Random()), std::move(dial)); }
+  /// The same after half this time to the whole of it; the next wait of Backoff stays as it is.
+  void Within(double most_s, std::function<void()> dial) {
+    timer_.After(most_s * (1 + Random()) / 2, std::move(dial));
+  }
+  /// The link is up: the next wait is short again.
+  void Reset() { backoff_.Reset(); }
+  void cancel() { timer_.cancel(); }
+
+ private:
+  double Random() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+
+  timer::Timer timer_;
+  Backoff backoff_;
+  std::mt19937 random_;
 };
 
 }  // namespace footing::transport

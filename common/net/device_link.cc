@@ -100,10 +100,9 @@ class DeviceLink::Implementation : public std::enable_shared_from_this<Implement
       log::Info("waiting for footingd: " + why + transport::RemedyFor(why, start));
     }
     waits_for_ = why;
-    redial_.expires_after(kRedial);
-    redial_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-      const auto self = weak.lock();
-      if (self && !error && !self->stopped_) self->Dial();
+    redial_.After(kRedial, [this] {
+      const auto self = shared_from_this();  // A handler may let the link go.
+      if (!stopped_) Dial();
     });
   }
 

@@ -129,11 +129,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     state_ = State::kFinishing;
     reason_ = reason;
     if (!last_payload.empty()) outbox_.Add(last_payload);
-    linger_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-        std::chrono::duration<double>(limits_.linger_s)));
-    linger_.async_wait([self = shared_from_this()](const error_code& error) {
-      if (!error) self->End(self->reason_);
-    });
+    linger_.After(limits_.linger_s, [self = shared_from_this()] { self->End(self->reason_); });
     Write();
   }
 
@@ -241,9 +237,8 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   bool Slow() {
     const std::int64_t wait_ns = pace_.WaitNs(clock::MonotonicNs());
     if (wait_ns == 0) return false;
-    slowed_.expires_after(std::chrono::nanoseconds(wait_ns));
-    slowed_.async_wait([self = shared_from_this()](const error_code& error) {
-      if (!error && self->state_ != State::kOver) self->Handle();
+    slowed_.After(std::chrono::nanoseconds(wait_ns), [self = shared_from_this()] {
+      if (self->state_ != State::kOver) self->Handle();
     });
     if (handlers_.on_slowed) handlers_.on_slowed(NanosecondsToSeconds(wait_ns));
     return true;

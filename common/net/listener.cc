@@ -185,9 +185,8 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
   }
 
   void AcceptLater() {
-    pause_.expires_after(kPauseAfterError);
-    pause_.async_wait([self = shared_from_this()](const error_code& error) {
-      if (!error && !self->closed_) self->Accept();
+    pause_.After(kPauseAfterError, [self = shared_from_this()] {
+      if (!self->closed_) self->Accept();
     });
   }
 

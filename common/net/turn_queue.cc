@@ -24,11 +24,10 @@ void TurnQueue::Add(Turn turn) {
 }
 
 void TurnQueue::ServeAfter(std::int64_t rest_ns, std::shared_ptr<Line> line) {
-  rest_.expires_after(std::chrono::nanoseconds(rest_ns));
-  rest_.async_wait([self = shared_from_this(),
-                    line = std::move(line)](const boost::system::error_code& error) mutable {
-    if (!error) self->Serve(std::move(line));
-  });
+  rest_.After(std::chrono::nanoseconds(rest_ns),
+              [self = shared_from_this(), line = std::move(line)]() mutable {
+                self->Serve(std::move(line));
+              });
 }
 
 void TurnQueue::Serve(std::shared_ptr<Line> line) {

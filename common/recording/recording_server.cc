@@ -63,9 +63,7 @@ void TickPlayer::Start() {
 void TickPlayer::PlayNext() {
   if (next_ >= due_.size()) return End();
   const Due& due = due_[next_];
-  timer_.expires_at(start_ + std::chrono::nanoseconds(due.time_ns - due_.front().time_ns));
-  timer_.async_wait([this, &due](const boost::system::error_code& error) {
-    if (error) return;
+  timer_.At(start_ + std::chrono::nanoseconds(due.time_ns - due_.front().time_ns), [this, &due] {
     Result<v1::Tick> tick = recording::ReadTick(*due.tick);
     if (!tick) return handlers_.on_end(tick.error());
     ShiftStamps(*tick, shift_ns_);
@@ -77,10 +75,7 @@ void TickPlayer::PlayNext() {
 }
 
 void TickPlayer::End() {
-  timer_.expires_after(kAfterLast);
-  timer_.async_wait([this](const boost::system::error_code& error) {
-    if (!error) handlers_.on_end({});
-  });
+  timer_.After(kAfterLast, [this] { handlers_.on_end({}); });
 }
 
 namespace {
@@ -143,11 +138,8 @@ void RecordingServer::Start(std::function<void(const Result<void>&)> on_end) {
 
 void RecordingServer::WaitForSession() {
   const bool found = server_.statistics().sessions > 0;
-  wait_.expires_after(found ? kSubscribeTime : kLookForSession);
-  wait_.async_wait([this, found](const boost::system::error_code& error) {
-    if (error) return;
-    found ? player_.Start() : WaitForSession();
-  });
+  wait_.After(found ? kSubscribeTime : kLookForSession,
+              [this, found] { found ? player_.Start() : WaitForSession(); });
 }
 
 void RecordingServer::Publish(const v1::Tick& tick) {

@@ -52,10 +52,7 @@ void Notifier::Report() {
 
 void Notifier::Beat() {
   Report();
-  timer_.expires_after(interval_);
-  timer_.async_wait([this](boost::system::error_code error) {
-    if (!error) Beat();
-  });
+  timer_.After(interval_, [this] { Beat(); });
 }
 
 void Notifier::Stopping() {
@@ -113,11 +110,28 @@ void ServiceSignals::OnSignal(int signal) {
     return;
   }
   if (std::exchange(stopping_, true)) return io_.stop();
-  patience_.expires_after(kPatience);
-  patience_.async_wait([this](const boost::system::error_code& error) {
-    if (!error) io_.stop();
-  });
+  patience_.After(kPatience, [this] { io_.stop(); });
   handlers_.stop(signal, [this] { io_.stop(); });
+}
+
+ProgramEnd::ProgramEnd(boost::asio::io_context& io, std::function<void()> on_signal)
+    : signals_(io, SIGINT, SIGTERM), limit_(io) {
+  signals_.async_wait(
+      [this, on_signal = std::move(on_signal)](const boost::system::error_code& error, int) {
+        if (error) return;
+        asked_ = true;
+        if (on_signal) on_signal();
+      });
+}
+
+void ProgramEnd::After(double seconds, std::function<void()> on_time_up) {
+  limit_.cancel();
+  if (seconds > 0) limit_.After(seconds, std::move(on_time_up));
+}
+
+void ProgramEnd::cancel() {
+  signals_.cancel();
+  limit_.cancel();
 }
 
 }  // namespace footing::service_manager

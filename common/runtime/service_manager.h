@@ -11,7 +11,8 @@
 #include "common/runtime/timer.h"
 
 /// Reports of a program to the service manager that started it (sd_notify(3)), and what it got
-/// from it (sd_listen_fds(3)). Started by hand, nothing of this happens.
+/// from it (sd_listen_fds(3)). Started by hand, nothing of this happens. And the signals that end
+/// a program.
 namespace footing::service_manager {
 
 /// The descriptor of the listening socket that the manager passed under this name
@@ -67,6 +68,28 @@ class ServiceSignals {
   Handlers handlers_;
   const bool ends_with_terminal_;
   bool stopping_ = false;
+};
+
+/// Ends a program that runs until it is stopped: SIGINT (Ctrl-C) or SIGTERM, or when its time is
+/// up.
+class ProgramEnd {
+ public:
+  /// `on_signal` is called once, on the io_context.
+  explicit ProgramEnd(boost::asio::io_context& io, std::function<void()> on_signal = {});
+  ProgramEnd(const ProgramEnd&) = delete;
+  ProgramEnd& operator=(const ProgramEnd&) = delete;
+
+  /// Calls `on_time_up` after this time, in place of an earlier such call; 0: never.
+  void After(double seconds, std::function<void()> on_time_up);
+  /// Neither calls any more, and the io_context does not wait for them.
+  void cancel();
+  /// A signal came.
+  bool asked() const { return asked_; }
+
+ private:
+  boost::asio::signal_set signals_;
+  timer::Timer limit_;
+  bool asked_ = false;
 };
 
 }  // namespace footing::service_manager

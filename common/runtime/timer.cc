@@ -74,6 +74,17 @@ void Timer::async_wait(Handler own_handler) {
               std::move(handler)});
 }
 
+void Timer::At(TimePoint expiry, std::function<void()> then) {
+  expires_at(expiry);
+  async_wait([then = std::move(then)](const boost::system::error_code& error) {
+    if (!error) then();
+  });
+}
+
+void Timer::After(double wait_s, std::function<void()> then) {
+  After(std::chrono::nanoseconds(SecondsToNanoseconds(wait_s)), std::move(then));
+}
+
 void Timer::cancel() {
   ++*cancelled_;
   real_.cancel();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/io_context.hpp>
@@ -37,6 +38,13 @@ class Timer {
   void expires_after(std::chrono::nanoseconds wait) { expires_at(Now() + wait); }
   /// The handler is called on the io_context, with operation_aborted after a cancel.
   void async_wait(Handler handler);
+  /// Waits and then calls `then` on the io_context. After a cancel it is not called any more, so it
+  /// may hold a pointer to the timer's owner.
+  void At(TimePoint expiry, std::function<void()> then);
+  void After(std::chrono::nanoseconds wait, std::function<void()> then) {
+    At(Now() + wait, std::move(then));
+  }
+  void After(double wait_s, std::function<void()> then);
   void cancel();
 
  private:

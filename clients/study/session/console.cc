@@ -6,10 +6,9 @@
 #include <array>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <csignal>
 #include <iostream>
 
+#include "common/runtime/service_manager.h"
 #include "common/runtime/timer.h"
 
 namespace footing::study {
@@ -23,12 +22,7 @@ constexpr double kAskS = 24 * 3600;  // A wait for a person has no end worth nam
 
 class Console::Implementation {
  public:
-  Implementation() : signals_(io_, SIGINT, SIGTERM), input_(io_) {
-    signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) interrupted_ = true;
-    });
-    terminal_ = ::tcgetattr(STDIN_FILENO, &before_) == 0;
-  }
+  Implementation() : input_(io_) { terminal_ = ::tcgetattr(STDIN_FILENO, &before_) == 0; }
 
   ~Implementation() { ReadKeys(false); }
 
@@ -101,11 +95,11 @@ class Console::Implementation {
   }
 
   Waited RunUntil(const std::function<bool()>& condition, double within_s) {
-    return timer::RunUntil(io_, condition, within_s, [this] { return interrupted_; });
+    return timer::RunUntil(io_, condition, within_s, [this] { return end_.asked(); });
   }
 
   asio::io_context io_{1};
-  asio::signal_set signals_;
+  service_manager::ProgramEnd end_{io_};
   asio::posix::stream_descriptor input_;
   std::array<char, 256> buffer_{};
   std::string typed_;
@@ -115,7 +109,6 @@ class Console::Implementation {
   bool keys_ = false;
   bool opened_ = false;
   bool ended_ = false;
-  bool interrupted_ = false;
 };
 
 Console::Console() : implementation_(std::make_unique<Implementation>()) {}
@@ -142,7 +135,7 @@ Result<std::string> Console::Ask(const std::string& prompt) {
   own.prompt_ = prompt.substr(prompt.rfind('\n') + 1);
   own.RunUntil([&own] { return own.HasLine() || own.ended_; }, kAskS);
   own.prompt_.clear();
-  if (own.interrupted_) return Interrupted();
+  if (own.end_.asked()) return Interrupted();
   if (own.HasLine() || !own.typed_.empty()) return own.TakeLine();
   return Failure(
       "the standard input has ended, so nobody can answer; run the command again in a terminal");
@@ -172,7 +165,7 @@ Waited Console::RunUntil(const std::function<bool()>& condition, double within_s
   return implementation_->RunUntil(condition, within_s);
 }
 
-bool Console::interrupted() const { return implementation_->interrupted_; }
+bool Console::interrupted() const { return implementation_->end_.asked(); }
 
 Error Interrupted() { return Failure("interrupted; footing-study run resumes the session"); }
 

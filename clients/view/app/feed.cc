@@ -1,7 +1,6 @@
 #include "clients/view/app/feed.h"
 
 #include <chrono>
-#include <csignal>
 #include <utility>
 
 #include <boost/asio/post.hpp>
@@ -188,10 +187,7 @@ void PreviewLink::Lose(State state, const std::string& why) {
   if (socket_) socket_->Close();
   socket_.reset();
   Show(state, why);
-  again_.expires_after(kDialEvery);
-  again_.async_wait([this, run = run_](const boost::system::error_code& error) {
-    if (!error && run == run_) Dial();
-  });
+  again_.After(kDialEvery, [this] { Dial(); });
 }
 
 namespace {
@@ -203,7 +199,7 @@ constexpr char kSensors[] = "footingd";
 }  // namespace
 
 Background::Background(const Options& options)
-    : signals_(io_, SIGINT, SIGTERM),
+    : end_(io_, [this] { stop_.Raise(); }),
       updates_(kQueuedTicks),
       feed_(io_, options,
             {[this](scene::Update update) { updates_.Push(std::move(update)); },
@@ -215,9 +211,6 @@ Background::Background(const Options& options)
   for (const scene::LinkReport& report : Feed::InitialReports(options)) {
     links_.push_back(std::make_unique<exchange::Latest<scene::LinkReport>>(report));
   }
-  signals_.async_wait([this](const boost::system::error_code& error, int) {
-    if (!error) stop_.Raise();
-  });
   thread_ = std::thread([this] { RunOnIoThread(); });
   WantPreview(options.camera.corner || options.camera.alone);
 }
@@ -231,7 +224,7 @@ Background::~Background() {
   boost::asio::post(io_, [this] {
     feed_.Stop();
     preview_link_.Stop();
-    signals_.cancel();
+    end_.cancel();
     io_.stop();
   });
   thread_.join();

@@ -9,8 +9,6 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "clients/view/app/options.h"
 #include "clients/view/app/window.h"
@@ -22,6 +20,8 @@
 #include "common/net/client.h"
 #include "common/net/socket.h"
 #include "common/runtime/exchange.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::view {
 
@@ -79,7 +79,7 @@ class PreviewLink {
   boost::asio::io_context& io_;
   transport::Address address_;
   OnChange on_change_;
-  boost::asio::steady_timer again_;
+  timer::Timer again_;
   std::array<char, kPiece> bytes_{};
   std::optional<transport::Socket> socket_;
   preview::PreviewReader reader_;
@@ -108,7 +108,7 @@ class Background {
   void RunOnIoThread();
 
   boost::asio::io_context io_;
-  boost::asio::signal_set signals_;
+  service_manager::ProgramEnd end_;
   exchange::BoundedQueue<scene::Update> updates_;
   std::vector<std::unique_ptr<exchange::Latest<scene::LinkReport>>> links_;
   exchange::Flag stop_;

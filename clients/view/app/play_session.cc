@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <list>
@@ -13,8 +12,6 @@
 
 #include <unistd.h>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "clients/view/app/feed.h"
 #include "clients/view/app/glfw_window.h"
@@ -31,6 +28,8 @@
 #include "common/net/address.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
 
 namespace footing::view {
 namespace {
@@ -454,7 +453,7 @@ class TextView {
         started_ns_(clock::MonotonicNs()),
         screen_(WantsScreen(options)),
         timer_(io_),
-        signals_(io_, SIGINT, SIGTERM),
+        end_(io_, [this] { Stop(); }),
         feed_(io_, options,
               {[this](const scene::Update& update) { show_.Take(update, clock::MonotonicNs()); },
                [this](int source, const scene::LinkReport& report) {
@@ -467,9 +466,6 @@ class TextView {
   }
 
   Result<void> Run() {
-    signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) Stop();
-    });
     feed_.Start();
     if (options_.camera.corner || options_.camera.alone) preview_.Start();
     WaitToDraw();
@@ -502,9 +498,7 @@ class TextView {
   void WaitToDraw() {
     double wait_s = screen_ ? kScreenEveryS : kLineEveryS;
     if (options_.seconds > 0) wait_s = std::min(wait_s, options_.seconds - PassedS());
-    timer_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(std::max(wait_s, 0.0))));
-    timer_.async_wait([this](const boost::system::error_code& error) {
-      if (error) return;
+    timer_.After(std::max(wait_s, 0.0), [this] {
       Draw();
       time_is_up_ = options_.seconds > 0 && PassedS() >= options_.seconds;
       if (time_is_up_) return Stop();
@@ -544,8 +538,8 @@ class TextView {
   bool screen_;
   bool time_is_up_ = false;
   boost::asio::io_context io_;
-  boost::asio::steady_timer timer_;
-  boost::asio::signal_set signals_;
+  timer::Timer timer_;
+  service_manager::ProgramEnd end_;
   scene::Show show_;
   Feed feed_;
   PreviewLink preview_;

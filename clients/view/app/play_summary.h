@@ -1,14 +1,13 @@
 #pragma once
 
-#include <csignal>
 #include <string>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
 
 #include "clients/view/app/play_session.h"
 #include "clients/view/scene/model.h"
+#include "common/runtime/service_manager.h"
 
 namespace footing::view {
 
@@ -26,23 +25,14 @@ std::string PlayLine(const PlaySession& session);
 /// Ctrl-C and SIGTERM for a loop that asks whether one came.
 class StopSignal {
  public:
-  StopSignal() : signals_(io_, SIGINT, SIGTERM) {
-    signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) asked_ = true;
-    });
-  }
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-
   bool asked() {
     io_.poll();
-    return asked_;
+    return end_.asked();
   }
 
  private:
   boost::asio::io_context io_;
-  boost::asio::signal_set signals_;
-  bool asked_ = false;
+  service_manager::ProgramEnd end_{io_};
 };
 
 /// Summary of a run, as one JSON object.

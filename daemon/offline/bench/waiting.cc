@@ -12,7 +12,6 @@
 #include <unistd.h>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 
 #include "common/base/text.h"
@@ -20,6 +19,7 @@
 #include "common/net/server.h"
 #include "common/net/socket.h"
 #include "common/runtime/clock.h"
+#include "common/runtime/timer.h"
 #include "common/wire/wire.h"
 #include "daemon/offline/bench/broker_link.h"
 #include "daemon/offline/bench/pairs.h"
@@ -336,7 +336,7 @@ Result<Rows> FanOutThousand() {
 namespace {
 
 struct Pacer {
-  boost::asio::steady_timer timer;
+  timer::Timer timer;
   std::function<void()> tick;
   std::chrono::nanoseconds interval;
   int left;
@@ -348,9 +348,7 @@ void Next(const std::shared_ptr<Pacer>& pacer) {
     pacer->done.set_value();
     return;
   }
-  pacer->timer.expires_at(pacer->timer.expiry() + pacer->interval);
-  pacer->timer.async_wait([pacer](const boost::system::error_code& error) {
-    if (error) return;
+  pacer->timer.At(pacer->timer.expiry() + pacer->interval, [pacer] {
     pacer->tick();
     Next(pacer);
   });
@@ -378,8 +376,8 @@ void LoopThread::Do(const std::function<void()>& work) {
 }
 
 void LoopThread::Pace(int count, std::int64_t interval_ns, const std::function<void()>& tick) {
-  auto pacer = std::make_shared<Pacer>(Pacer{
-      boost::asio::steady_timer(io_), tick, std::chrono::nanoseconds(interval_ns), count, {}});
+  const std::shared_ptr<Pacer> pacer(
+      new Pacer{timer::Timer(io_), tick, std::chrono::nanoseconds(interval_ns), count, {}});
   auto done = pacer->done.get_future();
   boost::asio::post(io_, [pacer] {
     pacer->timer.expires_after(std::chrono::nanoseconds(0));

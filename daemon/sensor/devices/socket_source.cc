@@ -155,9 +155,7 @@ class SocketSource::Implementation {
   }
 
   void CheckIdleLater() {
-    idle_check_.expires_after(kIdleCheckInterval);
-    idle_check_.async_wait([this](const boost::system::error_code& error) {
-      if (error) return;
+    idle_check_.After(kIdleCheckInterval, [this] {
       CloseIdle(clock::MonotonicNs());
       CheckIdleLater();
     });

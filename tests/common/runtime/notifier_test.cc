@@ -7,6 +7,7 @@
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -106,6 +107,31 @@ TEST_F(NotifierTest, ABeatThatIsDueWhenTheProgramStopsIsNotSent) {
   const auto said = RunAndRead();
   EXPECT_THAT(said, Contains("STOPPING=1"));
   EXPECT_EQ(std::count(said.begin(), said.end(), "WATCHDOG=1"), 1) << "that of Ready";
+}
+
+TEST(ProgramEnd, ASignalOrTheTimeEndsTheProgram) {
+  boost::asio::io_context io(1);
+  std::string called;
+  ProgramEnd end(io, [&] { called += "signal "; });
+  end.After(3600, [&] { called += "late "; });
+  end.After(0.001, [&] {
+    called += "time ";
+    EXPECT_FALSE(end.asked());
+    std::raise(SIGTERM);
+  });
+  timer::Run(io);  // Returns when nothing is left to wait for.
+  EXPECT_EQ(called, "time signal ");
+  EXPECT_TRUE(end.asked());
+}
+
+TEST(ProgramEnd, WithoutATimeItWaitsForASignalUntilItIsCancelled) {
+  boost::asio::io_context io(1);
+  timer::Timer work(io);
+  ProgramEnd end(io, [] { FAIL(); });
+  end.After(0, [] { FAIL(); });
+  work.After(std::chrono::milliseconds(5), [&] { end.cancel(); });
+  timer::Run(io);
+  EXPECT_FALSE(end.asked());
 }
 
 }  // namespace

@@ -122,5 +122,24 @@ TEST(Timer, ThatEndsWhenItHasExpiredCountsAsCancelled) {
   OnSimulatedTime(EndOneThatHasExpired);
 }
 
+/// Both have expired before the loop runs; the first one cancels the second.
+void CancelOneThatHasExpired() {
+  boost::asio::io_context io(1);
+  Timer first(io), second(io);
+  std::string called;
+  first.At(Now() - 2ms, [&] {
+    called += "first";
+    second.cancel();
+  });
+  second.At(Now() - 1ms, [&] { called += "second"; });
+  Run(io);
+  EXPECT_EQ(called, "first");
+}
+
+TEST(Timer, AfterACancelNothingIsCalledAnyMore) {
+  CancelOneThatHasExpired();
+  OnSimulatedTime(CancelOneThatHasExpired);
+}
+
 }  // namespace
 }  // namespace footing::timer
