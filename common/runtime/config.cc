@@ -176,20 +176,21 @@ Result<void> Binder::ApplyFile(const std::string& path) {
   return ApplyText(*text, path);
 }
 
-Result<void> Binder::ApplySetting(const std::string& setting) {
+Result<void> Binder::ApplySetting(const std::string& setting, const std::string& option) {
   const std::size_t equals = setting.find('=');
   if (equals == std::string::npos || equals == 0) {
-    return UsageError("--set " + setting + ": write it as key=value");
+    return UsageError(option + " " + setting + ": write it as key=value");
   }
   const std::string key = setting.substr(0, equals);
   const std::string text = setting.substr(equals + 1);
   const Entry* entry = Find(key);
   Json value = Json::parse(text, nullptr, false);
   if (value.is_discarded() || (entry != nullptr && entry->text && !value.is_string())) {
-    if (!text::IsUtf8(text)) return UsageError("--set " + key + ": its value is not text in UTF-8");
+    if (!text::IsUtf8(text))
+      return UsageError(option + " " + key + ": its value is not text in UTF-8");
     value = text;
   }
-  return Assign(key, value, "--set", "--set");
+  return Assign(key, value, option, option);
 }
 
 Result<void> Binder::Apply(const std::string& file, const std::vector<std::string>& settings) {
@@ -206,10 +207,6 @@ std::string Binder::Print() const {
   Json json = Json::object();
   for (const Entry& entry : entries_) json[entry.key] = entry.read();
   return json.dump(2);
-}
-
-void Binder::SetOrigin(const std::string& key, const std::string& origin) {
-  if (Entry* entry = Find(key)) entry->origin = origin;
 }
 
 std::string Binder::PrintOrigins() const {

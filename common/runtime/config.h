@@ -41,20 +41,18 @@ class Binder {
   Result<void> ApplyFile(const std::string& path);
   Result<void> ApplyText(const std::string& text, const std::string& origin);
   /// Applies one "key=value"; the value is JSON, or plain text for a text key.
-  Result<void> ApplySetting(const std::string& setting);
+  /// `option` is what gave it, for errors and origins.
+  Result<void> ApplySetting(const std::string& setting, const std::string& option = "--set");
 
   /// Both in their order: `file` where it is not empty, then each of `settings`.
   Result<void> Apply(const std::string& file, const std::vector<std::string>& settings);
 
   bool Has(const std::string& key) const { return Find(key) != nullptr; }
 
-  /// Says where a key's value comes from, when that was neither the file nor a setting.
-  void SetOrigin(const std::string& key, const std::string& origin);
-
   /// The effective config as a JSON object, in the order bound.
   std::string Print() const;
   /// The same with the origin of each value, a line a key: "KEY": {"value": ..., "origin":
-  /// "default", "FILE:LINE", "--set" or that of SetOrigin}.
+  /// "default", "FILE:LINE" or the option}.
   std::string PrintOrigins() const;
   /// One line a key: key, range, default, documentation.
   std::string Describe() const;
@@ -104,5 +102,16 @@ std::map<std::string, int> LinesOfKeys(const std::string& text);
 std::vector<std::string> DescribeReload(const Binder& before, const Binder& after,
                                         const Binder& wanted,
                                         const std::vector<std::string>& files);
+
+/// The same of three configs with a function Bind(Binder&).
+template <typename Config>
+std::vector<std::string> DescribeReload(Config before, Config after, Config wanted,
+                                        const std::vector<std::string>& files) {
+  Binder bound[3];
+  before.Bind(bound[0]);
+  after.Bind(bound[1]);
+  wanted.Bind(bound[2]);
+  return DescribeReload(bound[0], bound[1], bound[2], files);
+}
 
 }  // namespace footing::config

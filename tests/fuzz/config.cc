@@ -47,7 +47,7 @@ void CheckConfig(const std::string& text, Input input) {
   settings.Check();
   Settings whole;  // As a program is started: no file, and the same text as one setting.
   Expect(!whole.binder.Apply("", {text}) || text.find('=') != std::string::npos);
-  settings.binder.SetOrigin("text", "--text");
+  (void)settings.binder.ApplySetting("text=" + text, "--text").ok();
   const std::string printed = settings.binder.Print();
   Settings again;
   Expect(again.binder.ApplyText(printed, "p").ok() && again.binder.Print() == printed);

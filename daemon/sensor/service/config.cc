@@ -1,12 +1,9 @@
 #include "daemon/sensor/service/config.h"
 
-#include <iostream>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "common/cli/cli.h"
 #include "common/net/address.h"
 #include "common/net/metrics_endpoint.h"
 #include "common/net/monitoring.h"
@@ -110,10 +107,7 @@ Result<void> Check(const Config& config) {
 Config Reloaded(const Config& before, const Config& wanted,
                 const std::vector<std::string>& changed_files,
                 const std::function<void(const std::string& line)>& say) {
-  Config old_config = before, new_config = wanted, next = before;
-  config::Binder old_binder, new_binder, next_binder;
-  old_config.Bind(old_binder);
-  new_config.Bind(new_binder);
+  Config next = before;
   next.stale_after_s = wanted.stale_after_s;
   next.default_rig = wanted.default_rig;
   next.motion_plus = wanted.motion_plus;
@@ -123,11 +117,7 @@ Config Reloaded(const Config& before, const Config& wanted,
   next.access.token_file = wanted.access.token_file;
   next.access.view_token_file = wanted.access.view_token_file;
   next.access.clients_file = wanted.access.clients_file;
-  next.Bind(next_binder);
-  for (const auto& line :
-       config::DescribeReload(old_binder, next_binder, new_binder, changed_files)) {
-    say(line);
-  }
+  for (const auto& line : config::DescribeReload(before, next, wanted, changed_files)) say(line);
   return next;
 }
 
@@ -227,104 +217,33 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
   return channels;
 }
 
-namespace {
-
-struct Given {
-  std::string file, metrics;
-  std::vector<std::string> settings, listen, sources;
-  bool print = false, origin = false, check = false, json = false, quiet = false;
-  bool insecure_lan = false;
-};
-
-std::unique_ptr<CLI::App> NewParser(Given& given) {
-  auto app = cli::NewApp("footingd",
-                         "Sensor daemon: reads devices, publishes samples, features and forces.",
-                         "  footingd\n"
-                         "  footingd --source stream:unix:/tmp/devices.sock\n"
-                         "  footingd --set 'roles={\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}'\n");
-  app->add_option("--config", given.file, "Config file, JSON");
-  app->add_option("--set", given.settings,
-                  "Setting, key=value; may be repeated; overrides the config file");
-  app->add_option(
-      "--listen", given.listen,
-      "Address for clients, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated");
-  app->add_option(
-      "--source", given.sources,
-      "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated");
-  app->add_option("--metrics", given.metrics,
-                  "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH");
-  app->add_flag(
-      "--insecure-lan", given.insecure_lan,
-      "Allow --listen tcp: beyond this host WITHOUT ENCRYPTION; needs --set token_file=FILE");
-  CLI::Option* print =
-      app->add_flag("--print-config", given.print, "Print the effective config and exit");
-  app->add_flag(
-         "--origin", given.origin,
-         "With --print-config: where each value comes from, too (default, FILE:LINE, option)")
-      ->needs(print);
-  app->add_flag("--check-config", given.check,
-                "Check the config and the files that it names, and exit");
-  app->add_flag("--json", given.json, "Print the listening addresses as one JSON object");
-  app->add_flag("-q,--quiet", given.quiet, "Log only warnings and errors");
-  return app;
+cli::ServerProgram Program() {
+  using Kind = cli::KeyOption::Kind;
+  return {"footingd",
+          "Sensor daemon: reads devices, publishes samples, features and forces.",
+          "  footingd\n"
+          "  footingd --source stream:unix:/tmp/devices.sock\n"
+          "  footingd --set 'roles={\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}'\n",
+          {{"--source", "sources",
+            "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated",
+            Kind::kList},
+           {"--metrics", "metrics",
+            "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH"},
+           {"--insecure-lan", "insecure_lan",
+            "Allow --listen tcp: beyond this host WITHOUT ENCRYPTION; needs --set token_file=FILE",
+            Kind::kFlag}}};
 }
 
-/// An option of its own goes before the file and --set.
-template <typename Value>
-void Override(const Value& given, const char* key, const char* option, Value& value,
-              config::Binder& binder) {
-  if (given.empty()) return;
-  value = given;
-  binder.SetOrigin(key, option);
-}
-
-/// `binder` is bound to `config`.
-Result<void> Apply(const Given& given, Config& config, config::Binder& binder) {
-  if (const auto done = binder.Apply(given.file, given.settings); !done) return done;
-  Override(given.listen, "listen", "--listen", config.listen, binder);
-  Override(given.sources, "sources", "--source", config.sources, binder);
-  Override(given.metrics, "metrics", "--metrics", config.metrics, binder);
-  if (given.insecure_lan) {
-    config.access.insecure_lan = true;
-    binder.SetOrigin("insecure_lan", "--insecure-lan");
-  }
-  return Check(config);
-}
-
-}  // namespace
-
-std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_code) {
-  Given given;
-  const auto app = NewParser(given);
-  exit_code = 0;
-  if (const auto code = cli::Parse(*app, argc, argv)) {
-    exit_code = *code;
-    return std::nullopt;
-  }
-  log::Start("footingd", given.quiet);
-  CommandLine line;
-  line.json = given.json;
-  config::Binder binder;
-  line.config.Bind(binder);
-  auto done = Apply(given, line.config, binder);
-  if (done && given.print) {
-    std::cout << (given.origin ? binder.PrintOrigins() : binder.Print()) << std::endl;
-  }
-  if (done && given.check) done = CheckStart(line.config);
-  if (!done) exit_code = cli::Report(done.error());
-  if (!done || given.print || given.check) return std::nullopt;
-  return line;
-}
-
-Result<Config> ReadConfigAgain(int argc, char** argv) {
-  Given given;
-  const auto app = NewParser(given);
-  if (cli::Parse(*app, argc, argv)) return Failure("the command line cannot be read again");
+Result<Config> ReadConfig(const cli::ServerLine& line) {
   Config config;
   config::Binder binder;
   config.Bind(binder);
-  if (const auto done = Apply(given, config, binder); !done) return done.error();
-  return config;
+  if (const auto done = line.Apply(binder); !done) return done.error();
+  if (const auto done = Check(config); !done) return done.error();
+  line.PrintIfAsked(binder);
+  if (!line.check) return config;
+  const auto checked = CheckStart(config);
+  return checked ? Result<Config>(config) : checked.error();
 }
 
 }  // namespace footing::sensor

@@ -9,6 +9,7 @@
 #include "common/base/result.h"
 #include "common/base/units.h"
 #include "common/board/geometry.h"
+#include "common/cli/server.h"
 #include "common/net/access.h"
 #include "common/net/address.h"
 #include "common/net/limits.h"
@@ -81,18 +82,11 @@ std::vector<transport::Channel> Channels();
 /// Each channel that has something to say, serialised once for all sessions.
 std::vector<transport::ChannelBytes> ToChannels(const TickContent& content);
 
-/// Request on the command line.
-struct CommandLine {
-  Config config;
-  bool json = false;  ///< One JSON object on standard output once it listens.
-};
+/// footingd, as its help describes it.
+cli::ServerProgram Program();
 
-/// Parses it and reads the config: defaults < file < --set < flags of their own. Without a value
-/// the program ends with `exit_code`: help, version, --print-config, --check-config or an error,
-/// already printed.
-std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_code);
-
-/// The config of the same command line once more, with what its file has now.
-Result<Config> ReadConfigAgain(int argc, char** argv);
+/// The config of a command line: defaults < file < --set < options of their own. Prints and checks
+/// what the command line asks for.
+Result<Config> ReadConfig(const cli::ServerLine& line);
 
 }  // namespace footing::sensor

@@ -108,15 +108,13 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     if (config_.access.insecure_lan) lan_warning_ = transport::WarnOfInsecureLan(io_);
   }
 
-  void Reload(const Config& wanted) {
+  Result<void> Reload(const Config& wanted) {
     const auto changed_files = wanted.access.Reapply(server_);
-    if (!changed_files) {
-      return log::Warning("config not reloaded: the one in force stays: " +
-                          changed_files.error().message);
-    }
+    if (!changed_files) return changed_files.error();
     config_ = Reloaded(config_, wanted, *changed_files, log::Info);
     hub_.Reload(config_);
     server_.SetLimits(config_.sessions);
+    return {};
   }
 
   void Stop(const std::string& reason, std::function<void()> done) {
@@ -209,12 +207,9 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       server_.NoteLateTicks(static_cast<std::uint64_t>((now - next_tick_) / period));
       next_tick_ = now;
     }
-    timer_.expires_at(next_tick_);
-    timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-      const auto self = weak.lock();
-      if (error || !self) return;
-      self->Tick();
-      self->WaitForTick();
+    timer_.At(next_tick_, [this] {
+      Tick();
+      WaitForTick();
     });
   }
 
@@ -283,7 +278,7 @@ Result<std::unique_ptr<Service>> Service::Start(boost::asio::io_context& io, con
 void Service::Stop(const std::string& reason, std::function<void()> done) {
   implementation_->Stop(reason, std::move(done));
 }
-void Service::Reload(const Config& wanted) { implementation_->Reload(wanted); }
+Result<void> Service::Reload(const Config& wanted) { return implementation_->Reload(wanted); }
 std::string Service::Stuck() const { return implementation_->Stuck(); }
 std::vector<std::string> Service::listening_on() const { return implementation_->listening_on(); }
 

@@ -29,8 +29,9 @@ class Service {
   /// called when the last one has ended.
   void Stop(const std::string& reason, std::function<void()> done);
 
-  /// Takes of another config what needs no restart, and logs what changed and what does.
-  void Reload(const Config& wanted);
+  /// Takes of another config what needs no restart, and logs what changed and what does. An error
+  /// changes nothing.
+  Result<void> Reload(const Config& wanted);
   /// Name of the thread that is stuck in a call to the kernel; empty: none.
   std::string Stuck() const;
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
 
 #include "common/base/result.h"
+#include "common/cli/server.h"
 #include "daemon/simulation/gait_service/config.h"
 #include "daemon/simulation/pose_service/pose_line.h"
 #include "daemon/simulation/serving/simulation_thread.h"
@@ -31,24 +31,18 @@ Result<void> Check(const Config& config);
 /// engine that does not run.
 Result<void> CheckApply(const Config& config, const std::vector<std::string>& settings);
 
-/// Request on the command line.
-struct CommandLine {
-  Config config;
-  bool json = false;  ///< Print the listening addresses as one JSON object.
-};
+/// footing-sim, as its help describes it.
+cli::ServerProgram Program();
 
-/// Reads the command line and the config file into `line` and starts the log. The exit code when
-/// the program should end now: after --help, --print-config or --check-config, or for an error that
-/// has been printed.
-std::optional<int> ReadCommandLine(int argc, char** argv, CommandLine& line);
-
-/// The config of the same command line once more, with what its file has now.
-Result<Config> ReadConfigAgain(int argc, char** argv);
+/// The config of a command line: defaults < file < --set < options of their own. Prints and checks
+/// what the command line asks for.
+Result<Config> ReadConfig(const cli::ServerLine& line);
 
 /// footing-sim: subscribes to footingd, runs the configured engine on its thread, publishes frames.
-/// Reads the engine's files, builds it, opens the listeners and starts.
-Result<serving::Served> StartService(boost::asio::io_context& io, const Config& config,
-                                     const std::string& version);
+/// Reads the engine's files, builds it, opens the listeners and starts. A reload reads the config
+/// of `line` again.
+Result<cli::RunningServer> StartService(boost::asio::io_context& io, const cli::ServerLine& line,
+                                        const Config& config, const std::string& version);
 
 /// Checks of StartService besides the config itself: reads all files and builds the engine, and
 /// opens no socket.

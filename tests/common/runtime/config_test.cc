@@ -222,7 +222,7 @@ TEST(Config, EachValueKnowsWhereItComesFrom) {
       "\"listen\":\n[\"unix:a\"]}";
   ASSERT_TRUE(binder.ApplyText(file, "/etc/f.json"));
   ASSERT_TRUE(binder.ApplySetting("sessions=4"));
-  binder.SetOrigin("listen", "--listen");
+  ASSERT_TRUE(binder.ApplySetting(R"(listen=["unix:b"])", "--listen"));
   const auto shown = nlohmann::json::parse(binder.PrintOrigins());
   EXPECT_EQ(shown["rate_hz"], (nlohmann::json{{"value", 50}, {"origin", "/etc/f.json:4"}}));
   EXPECT_EQ(shown["sessions"], (nlohmann::json{{"value", 4}, {"origin", "--set"}}));

@@ -1,11 +1,14 @@
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/cli/cli.h"
+#include "common/cli/server.h"
 #include "daemon/sensor/service/config.h"
 #include "footing/v1/session.pb.h"
 #include "tests/common/temporary_folder.h"
@@ -17,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 
 struct Parsed {
-  bool starts = false;
+  std::optional<Config> config;
   int exit_code = 0;
   std::string errors;
 };
@@ -28,9 +31,15 @@ Parsed Parse(std::vector<std::string> words) {
   for (std::string& word : words) arguments.push_back(word.data());
   Parsed parsed;
   testing::internal::CaptureStderr();
-  parsed.starts =
-      ParseCommandLine(static_cast<int>(arguments.size()), arguments.data(), parsed.exit_code)
-          .has_value();
+  cli::ServerLine line;
+  const auto code =
+      cli::ParseServerLine(Program(), static_cast<int>(arguments.size()), arguments.data(), line);
+  parsed.exit_code = code.value_or(0);
+  if (!code) {
+    const auto config = ReadConfig(line);
+    if (config) parsed.config = *config;
+    if (!config) parsed.exit_code = cli::Report(config.error());
+  }
   parsed.errors = testing::internal::GetCapturedStderr();
   return parsed;
 }
@@ -51,10 +60,10 @@ TEST(CommandLine, CheckConfigReadsTheFilesAndEndsAsTheStartWould) {
 
 TEST(CommandLine, OriginNeedsPrintConfig) {
   const Parsed parsed = Parse({"--origin"});
-  EXPECT_FALSE(parsed.starts);
+  EXPECT_FALSE(parsed.config);
   EXPECT_EQ(parsed.exit_code, 2);
   EXPECT_THAT(parsed.errors, HasSubstr("--print-config"));
-  EXPECT_TRUE(Parse({}).starts);
+  EXPECT_TRUE(Parse({}).config);
 }
 
 TEST(CommandLine, AWrongRoleOrRigIsNamed) {
@@ -67,16 +76,30 @@ TEST(CommandLine, AWrongRoleOrRigIsNamed) {
               HasSubstr("default_rig: the rig's name"));
 }
 
-TEST(CommandLine, ReadAgainAnErrorIsReturnedAndNothingIsPrinted) {
+TEST(CommandLine, AnOptionOfItsOwnGoesBeforeTheFileAndSet) {
   const test::TemporaryFolder folder;
   const std::string file = folder.Path("footingd.json");
-  std::ofstream(file) << R"({"stale_after_s": 2})";
-  std::string words[] = {"footingd", "--config", file};
-  char* arguments[] = {words[0].data(), words[1].data(), words[2].data()};
-  EXPECT_EQ(ReadConfigAgain(3, arguments)->stale_after_s, 2);
-  std::ofstream(file) << R"({"stale_afer_s": 3})";
+  std::ofstream(file) << R"({"listen": ["unix:/tmp/file"], "metrics": "unix:/tmp/file"})";
+  const auto config = Parse({"--listen", "unix:/tmp/a", "--listen", "unix:/tmp/b", "--metrics",
+                             "unix:/tmp/own", "--insecure-lan", "--config", file, "--set",
+                             "metrics=unix:/tmp/set", "--set", "token_file=" + file})
+                          .config;
+  ASSERT_TRUE(config);
+  EXPECT_EQ(config->listen, (std::vector<std::string>{"unix:/tmp/a", "unix:/tmp/b"}));
+  EXPECT_EQ(config->metrics, "unix:/tmp/own");
+  EXPECT_TRUE(config->access.insecure_lan);
+  EXPECT_THAT(Parse({"--listen", "unix:/tmp/\xff"}).errors, HasSubstr("not text in UTF-8"));
+}
+
+TEST(CommandLine, ReadAgainAnErrorIsReturnedAndNothingIsPrinted) {
+  const test::TemporaryFolder folder;
+  cli::ServerLine line;
+  line.file = folder.Path("footingd.json");
+  std::ofstream(line.file) << R"({"stale_after_s": 2})";
+  EXPECT_EQ(ReadConfig(line)->stale_after_s, 2);
+  std::ofstream(line.file) << R"({"stale_afer_s": 3})";
   testing::internal::CaptureStderr();
-  const auto again = ReadConfigAgain(3, arguments);
+  const auto again = ReadConfig(line);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   ASSERT_FALSE(again);
   EXPECT_THAT(again.error().message, HasSubstr("unknown key \"stale_afer_s\""));
