@@ -14,6 +14,10 @@
 #include "common/base/result.h"
 #include "common/net/address.h"
 
+namespace footing::http_server {
+class Server;
+}
+
 namespace footing::skeleton {
 
 /// Options of the server of the page with the pose model.
@@ -48,10 +52,13 @@ class WebServer {
   /// Address as bound.
   const transport::Address& address() const;
 
+  struct Desk;
+
  private:
-  class Implementation;
-  explicit WebServer(std::unique_ptr<Implementation> implementation);
-  std::unique_ptr<Implementation> implementation_;
+  WebServer(std::shared_ptr<Desk> desk, std::unique_ptr<http_server::Server> server);
+
+  std::shared_ptr<Desk> desk_;
+  std::unique_ptr<http_server::Server> server_;
 };
 
 /// A file of the page, which is part of the program.

@@ -8,6 +8,10 @@
 #include "common/base/result.h"
 #include "common/net/address.h"
 
+namespace footing::http_server {
+class Server;
+}
+
 namespace footing::monitoring {
 
 /// Answers GET /metrics over HTTP, one request a connection: on TCP of this host, where a
@@ -31,9 +35,8 @@ class MetricsEndpoint {
   MetricsEndpoint& operator=(const MetricsEndpoint&) = delete;
 
  private:
-  class Implementation;
-  explicit MetricsEndpoint(std::unique_ptr<Implementation> implementation);
-  std::unique_ptr<Implementation> implementation_;
+  explicit MetricsEndpoint(std::unique_ptr<http_server::Server> server);
+  std::unique_ptr<http_server::Server> server_;
 };
 
 }  // namespace footing::monitoring

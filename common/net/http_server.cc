@@ -1,0 +1,121 @@
+#include "common/net/http_server.h"
+
+#include <boost/beast/core/flat_static_buffer.hpp>
+#include <boost/beast/http.hpp>
+
+#include "common/runtime/timer.h"
+
+namespace footing::http_server {
+
+namespace http = boost::beast::http;
+using boost::system::error_code;
+using Socket = transport::PlainSocket;
+
+/// State that the connections share.
+struct Server::Desk {
+  Options options;
+  int connections = 0;
+  bool closed = false;
+};
+
+namespace {
+
+/// One connection: a request, an answer, and the end.
+class Exchange : public std::enable_shared_from_this<Exchange> {
+ public:
+  Exchange(Socket socket, std::shared_ptr<Server::Desk> desk)
+      : socket_(std::move(socket)),
+        deadline_(socket_.get_executor()),
+        desk_(std::move(desk)),
+        place_(nullptr, [desk = desk_](void*) { --desk->connections; }) {
+    ++desk_->connections;
+    parser_.header_limit(static_cast<std::uint32_t>(desk_->options.most_header_bytes));
+    parser_.body_limit(0);
+  }
+
+  void Start() {
+    deadline_.After(desk_->options.request_within, [this] { Close(); });
+    http::async_read(
+        socket_, buffer_, parser_,
+        [self = shared_from_this()](const error_code& error, std::size_t) { self->OnRead(error); });
+  }
+
+ private:
+  void OnRead(const error_code& error) {
+    if (desk_->closed || error == boost::asio::error::operation_aborted) return;
+    if (error == http::error::end_of_stream || !socket_.is_open()) return;
+    const Request* const request = error ? nullptr : &parser_.get();
+    const Options& options = desk_->options;
+    if (request != nullptr && options.upgrade && options.upgrade(*request, socket_, place_)) {
+      return deadline_.cancel();
+    }
+    Answer answer = options.answer(request);
+    const unsigned version = request == nullptr ? 10 : request->version();
+    if (!answer.file.empty()) {
+      error_code failed;
+      file_.body().open(answer.file.c_str(), boost::beast::file_mode::scan, failed);
+      if (!failed) return Send(file_, answer, version);
+      answer = {http::status::not_found, "text/plain; charset=utf-8", "it cannot be read\n"};
+    }
+    text_.body() = std::move(answer.text);
+    Send(text_, answer, version);
+  }
+
+  template <typename Response>
+  void Send(Response& response, const Answer& answer, unsigned version) {
+    response.result(answer.status);
+    response.version(version);
+    response.keep_alive(false);
+    response.set(http::field::content_type, answer.type);
+    for (const auto& [name, value] : desk_->options.headers) response.set(name, value);
+    response.prepare_payload();
+    deadline_.After(desk_->options.answer_within, [this] { Close(); });
+    http::async_write(
+        socket_, response,
+        [self = shared_from_this()](const error_code&, std::size_t) { self->Close(); });
+  }
+
+  void Close() {
+    deadline_.cancel();
+    error_code ignored;  // It may be gone already.
+    socket_.shutdown(Socket::shutdown_both, ignored);
+    socket_.close(ignored);
+  }
+
+  Socket socket_;
+  timer::Timer deadline_;
+  std::shared_ptr<Server::Desk> desk_;
+  Place place_;
+  boost::beast::flat_static_buffer<kMostHeaderBytes> buffer_;
+  http::request_parser<http::empty_body> parser_;
+  http::response<http::string_body> text_;
+  http::response<http::file_body> file_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> Server::Open(boost::asio::io_context& io,
+                                             const transport::Address& address, Options options,
+                                             const transport::ListenSecurity& security) {
+  auto desk = std::make_shared<Desk>();
+  desk->options = std::move(options);
+  auto listener = transport::Listener::Open(
+      io, address,
+      [desk](transport::Socket socket) {
+        if (desk->connections < desk->options.most_connections)
+          std::make_shared<Exchange>(std::move(socket.plain()), desk)->Start();
+      },
+      security);
+  if (!listener) return listener.error();
+  return std::unique_ptr<Server>(new Server(std::move(desk), std::move(*listener)));
+}
+
+Server::Server(std::shared_ptr<Desk> desk, std::unique_ptr<transport::Listener> listener)
+    : desk_(std::move(desk)), listener_(std::move(listener)) {}
+
+Server::~Server() {
+  desk_->closed = true;
+  desk_->options = {};
+}
+
+}  // namespace footing::http_server
