@@ -21,6 +21,7 @@
 #include "common/net/address.h"
 #include "common/net/client.h"
 #include "common/runtime/clock.h"
+#include "common/runtime/files.h"
 
 namespace footing::transport {
 namespace {
@@ -44,14 +45,11 @@ boost::system::error_code Broken(tls::Progress progress) {
 struct Dialling {
   explicit Dialling(asio::io_context& io) : socket(io), deadline(io) {}
 
-  void SetDeadline(const std::weak_ptr<Dialling>& weak) {
-    deadline.expires_after(std::chrono::seconds(3));
-    deadline.async_wait([weak](const boost::system::error_code& error) {
-      const auto self = weak.lock();
-      if (error || !self) return;
-      self->late = true;
+  void SetDeadline() {
+    deadline.After(std::chrono::seconds(3), [this] {
+      late = true;
       boost::system::error_code ignored;
-      self->socket.close(ignored);
+      socket.close(ignored);
     });
   }
 
@@ -187,7 +185,7 @@ void Dial(asio::io_context& io, const Address& address, std::function<void(Resul
     return;
   }
   const auto dialling = std::make_shared<Dialling>(io);
-  if (address.OverTcp()) dialling->SetDeadline(dialling);
+  if (address.OverTcp()) dialling->SetDeadline();
   clock::Act();
   dialling->socket.async_connect(*endpoint, [&io, dialling, address, done = std::move(done)](
                                                 const boost::system::error_code& error) {
@@ -235,23 +233,18 @@ constexpr useconds_t kLockTryUs = 10'000;
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder)
-      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (descriptor_ < 0) error_ = errno;
-    for (int tries = 0; descriptor_ >= 0; ++tries) {
-      error_ = flock(descriptor_, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+      : folder_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (!folder_.is_open()) error_ = errno;
+    for (int tries = 0; folder_.is_open(); ++tries) {
+      error_ = flock(folder_.number(), LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
       if (error_ != EWOULDBLOCK || tries == kLockTries) break;
       usleep(kLockTryUs);
     }
   }
-  ~FolderLock() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
   int error() const { return error_; }
 
  private:
-  int descriptor_;
+  config::FileDescriptor folder_;
   int error_ = 0;
 };
 

@@ -129,27 +129,23 @@ Result<RegularFile> RegularFile::Open(const std::string& path) {
   if (stat(path.c_str(), &status) != 0) return Failure(std::strerror(errno));
   if (!S_ISREG(status.st_mode)) return NotRegular(status.st_mode);
   // It may have been replaced since: without O_NONBLOCK a pipe would wait for its writer.
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (descriptor < 0) return Failure(std::strerror(errno));
-  const bool known = fstat(descriptor, &status) == 0;
-  RegularFile file(descriptor, status.st_mode, static_cast<std::size_t>(status.st_size));
+  FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!file.is_open()) return Failure(std::strerror(errno));
+  const bool known = fstat(file.number(), &status) == 0;
   if (!known || !S_ISREG(status.st_mode)) return NotRegular(status.st_mode);
-  return file;
+  return RegularFile(std::move(file), status.st_mode, static_cast<std::size_t>(status.st_size));
 }
 
-RegularFile::~RegularFile() {
-  if (descriptor_ >= 0) close(descriptor_);
+FileDescriptor::~FileDescriptor() {
+  if (number_ >= 0) close(number_);
 }
-
-RegularFile::RegularFile(RegularFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), mode_(other.mode_), size_(other.size_) {}
 
 Result<std::string> RegularFile::Read(std::size_t bytes) const {
   std::string text(std::min(bytes, size_), '\0');
   std::size_t have = 0;
   while (have < text.size()) {
     const ssize_t got =
-        pread(descriptor_, text.data() + have, text.size() - have, static_cast<off_t>(have));
+        pread(file_.number(), text.data() + have, text.size() - have, static_cast<off_t>(have));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return Failure(std::strerror(errno));
     if (got == 0) return Failure("it was cut short while it was read");
@@ -180,17 +176,14 @@ int CopyRights(const std::string& path, int file) {
   return fchmod(file, old.st_mode & kRights) == 0 ? 0 : errno;
 }
 
-/// The rename itself; some file systems cannot, and the file is whole anyway.
+}  // namespace
+
 void SyncFolderOf(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path();
-  const int directory =
-      open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return;
-  fsync(directory);
-  close(directory);
+  const FileDescriptor directory(
+      open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory.is_open()) fsync(directory.number());
 }
-
-}  // namespace
 
 Result<void> MakeFoldersAbove(const std::string& path) {
   for (std::size_t slash = path.find('/', 1); slash != std::string::npos;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include <sys/types.h>
 
@@ -28,15 +29,31 @@ Result<std::string> ReadNamed(const std::string& name, const std::string& folder
 /// FindDataFile, then ReadTextFile.
 Result<std::string> ReadDataFile(const std::string& name, const std::string& folder = "");
 
+/// Owns an open file, socket or other descriptor.
+class FileDescriptor {
+ public:
+  /// A negative number is none.
+  explicit FileDescriptor(int number = -1) : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~FileDescriptor();
+
+  int number() const { return number_; }
+  bool is_open() const { return number_ >= 0; }
+
+ private:
+  int number_;
+};
+
 /// A regular file that is open for reading. A folder, a named pipe, a device and a socket are
 /// refused at once: opening them may wait for ever, and so would the program.
 class RegularFile {
  public:
   /// An error is the reason alone.
   static Result<RegularFile> Open(const std::string& path);
-  ~RegularFile();
-  RegularFile(RegularFile&& other) noexcept;
-  RegularFile& operator=(RegularFile&&) = delete;
 
   mode_t mode() const { return mode_; }
   std::size_t size() const { return size_; }
@@ -46,16 +63,20 @@ class RegularFile {
   Result<std::string> Read(std::size_t bytes) const;
 
  private:
-  RegularFile(int descriptor, mode_t mode, std::size_t size)
-      : descriptor_(descriptor), mode_(mode), size_(size) {}
+  RegularFile(FileDescriptor file, mode_t mode, std::size_t size)
+      : file_(std::move(file)), mode_(mode), size_(size) {}
 
-  int descriptor_;
+  FileDescriptor file_;
   mode_t mode_;
   std::size_t size_;
 };
 
 /// The folders above a file, made where they are missing (mode 0700). An error names the folder.
 Result<void> MakeFoldersAbove(const std::string& path);
+
+/// Writes the folder of a file to the disk, so that the file's name survives the loss of power.
+/// Some file systems cannot.
+void SyncFolderOf(const std::string& path);
 
 /// Replaces the content of a file, on the disk before this returns: written beside, synced, then
 /// renamed, so that a reader finds the old content or the new one, never half of it. An existing

@@ -28,16 +28,6 @@ Error Fault(const std::string& what, const std::string& path) {
   return Failure("cannot " + what + " " + path + ": " + std::strerror(errno));
 }
 
-/// So that the file's name survives the loss of power, too.
-void SyncFolder(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const int descriptor =
-      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
 }  // namespace
 
 Result<records::JournalText> ReadJournal(const std::string& path) {
@@ -74,59 +64,37 @@ Result<void> RequireNoPerson(const std::string& study_folder) {
 }
 
 Result<Journal> Journal::Create(const std::string& path) {
-  const int descriptor =
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600);
-  if (descriptor < 0) {
+  config::FileDescriptor file(
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600));
+  if (!file.is_open()) {
     if (errno == EEXIST) return UsageError(path + " exists and is never overwritten");
     return Fault("create", path);
   }
-  SyncFolder(path);
-  return Journal(path, descriptor);
+  config::SyncFolderOf(path);
+  return Journal(path, std::move(file));
 }
 
 Result<Journal> Journal::Resume(const std::string& path) {
   auto text = ReadJournal(path);
   if (!text) return text.error();
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (descriptor < 0) return Fault("open", path);
-  Journal journal(path, descriptor);
+  config::FileDescriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (!file.is_open()) return Fault("open", path);
   if (text->torn_bytes > 0) {
-    if (::ftruncate(descriptor, static_cast<off_t>(text->whole_bytes)) != 0) {
+    if (::ftruncate(file.number(), static_cast<off_t>(text->whole_bytes)) != 0) {
       return Fault("cut the torn line of", path);
     }
-    if (::fsync(descriptor) != 0) return Fault("write", path);
+    if (::fsync(file.number()) != 0) return Fault("write", path);
   }
+  Journal journal(path, std::move(file));
   journal.events_ = std::move(text->events);
   journal.torn_bytes_ = text->torn_bytes;
   journal.whole_bytes_ = text->whole_bytes;
   return journal;
 }
 
-Journal::Journal(Journal&& other) noexcept
-    : path_(std::move(other.path_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      events_(std::move(other.events_)),
-      torn_bytes_(other.torn_bytes_),
-      whole_bytes_(other.whole_bytes_),
-      refused_(std::move(other.refused_)) {}
-
-Journal& Journal::operator=(Journal&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(events_, other.events_);
-  std::swap(torn_bytes_, other.torn_bytes_);
-  std::swap(whole_bytes_, other.whole_bytes_);
-  std::swap(refused_, other.refused_);
-  return *this;
-}
-
-Journal::~Journal() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
 Result<void> Journal::Refuse(const std::string& what) {
   refused_ = Fault(what, path_);
-  if (::ftruncate(descriptor_, static_cast<off_t>(whole_bytes_)) == 0) ::fsync(descriptor_);
+  if (::ftruncate(file_.number(), static_cast<off_t>(whole_bytes_)) == 0) ::fsync(file_.number());
   return refused_;
 }
 
@@ -140,12 +108,12 @@ Result<void> Journal::Append(records::EventKind kind, nlohmann::ordered_json fie
   const std::string line = ToLine(event) + "\n";
   std::string_view left = line;
   while (!left.empty()) {
-    const ssize_t written = ::write(descriptor_, left.data(), left.size());
+    const ssize_t written = ::write(file_.number(), left.data(), left.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return Refuse("write");
     left.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(descriptor_) != 0) return Refuse("write");
+  if (::fsync(file_.number()) != 0) return Refuse("write");
   whole_bytes_ += line.size();
   events_.push_back(std::move(event));
   return {};
@@ -165,9 +133,9 @@ std::string Holder(int descriptor) {
 
 Result<Lock> Lock::Take(const std::string& path, const std::string& what,
                         const std::string& holder) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  Lock lock(config::FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)));
+  const int descriptor = lock.file_.number();
   if (descriptor < 0) return Failure("cannot open " + path + ": " + std::strerror(errno));
-  Lock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) return Failure("cannot lock " + path + ": " + std::strerror(errno));
     return Failure(what + " is in use by " + Holder(descriptor) +
@@ -179,17 +147,6 @@ Result<Lock> Lock::Take(const std::string& path, const std::string& what,
       ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
   if (!written) return Failure("cannot write " + path + ": " + std::strerror(errno));
   return lock;
-}
-
-Lock::Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-Lock& Lock::operator=(Lock&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
-Lock::~Lock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 namespace {
@@ -238,22 +195,8 @@ std::string JournalPath(const std::string& study_folder, const std::string& part
 }
 
 Result<void> ReplaceFile(const std::string& path, const std::string& text) {
-  const std::string draft = path + ".new";
-  const int descriptor = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (descriptor < 0) return Failure("cannot create " + draft + ": " + std::strerror(errno));
-  const bool written =
-      ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-      ::fsync(descriptor) == 0;
-  const int error = errno;
-  ::close(descriptor);
-  if (!written) {
-    ::unlink(draft.c_str());
-    return Failure("cannot write " + draft + ": " + std::strerror(error));
-  }
-  if (::rename(draft.c_str(), path.c_str()) != 0) {
-    return Failure("cannot rename " + draft + ": " + std::strerror(errno));
-  }
-  return {};
+  const auto done = config::ReplaceFile(path, text);
+  return done ? done : Failure("cannot write " + path + ": " + done.error().message);
 }
 
 Result<void> MakeFolder(const std::string& path) {

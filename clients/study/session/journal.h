@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "clients/study/report/event.h"
 #include "common/base/result.h"
+#include "common/runtime/files.h"
 
 namespace footing::study::journal {
 
@@ -21,12 +23,6 @@ class Journal {
   /// An existing file, to go on with it. A torn last line is cut off: see torn_bytes().
   static Result<Journal> Resume(const std::string& path);
 
-  Journal(Journal&& other) noexcept;
-  Journal& operator=(Journal&& other) noexcept;
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
-  ~Journal();
-
   /// Appends an event. When the disk refuses, the written part of the line is cut off again, and
   /// every later call returns the same failure: the file stays readable, and Resume goes on with
   /// it.
@@ -38,12 +34,13 @@ class Journal {
   const std::string& path() const { return path_; }
 
  private:
-  Journal(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+  Journal(std::string path, config::FileDescriptor file)
+      : path_(std::move(path)), file_(std::move(file)) {}
   /// `what` failed with errno: cuts the file behind its last whole line.
   Result<void> Refuse(const std::string& what);
 
   std::string path_;
-  int descriptor_ = -1;
+  config::FileDescriptor file_;
   std::vector<records::Event> events_;
   std::size_t torn_bytes_ = 0;
   std::size_t whole_bytes_ = 0;  ///< Size of all lines on the disk.
@@ -69,15 +66,10 @@ class Lock {
   static Result<Lock> Take(const std::string& path, const std::string& what,
                            const std::string& holder);
 
-  Lock(Lock&& other) noexcept;
-  Lock& operator=(Lock&& other) noexcept;
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-  ~Lock();
-
  private:
-  explicit Lock(int descriptor) : descriptor_(descriptor) {}
-  int descriptor_ = -1;
+  explicit Lock(config::FileDescriptor file) : file_(std::move(file)) {}
+
+  config::FileDescriptor file_;
 };
 
 // Where a study's files are: beside its protocol NAME.json the folder NAME, in it a folder for
