@@ -1,7 +1,6 @@
 #include "common/net/session.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 #include <string>
@@ -67,28 +66,17 @@ stream::SessionStats Session::Stats() const {
   stats.role = RoleName(info_.role);
   stats.local = peer_.known;
   stats.connected_s = NanosecondsToSeconds(now_ns - record_.began_ns);
-  stats.ticks_sent = record_.ticks_sent;
-  stats.ticks_dropped = record_.ticks_dropped + queue_.dropped_ticks();
+  stats.ticks_sent = ticks_.sent();
+  stats.ticks_dropped = ticks_.dropped();
   stats.slowed = record_.slowed;
   const OffsetEstimate clock = record_.clock.estimate();
   stats.clock_valid = clock.valid;
   stats.clock_offset_s = NanosecondsToSeconds(clock.offset_ns);
   stats.clock_uncertainty_s = NanosecondsToSeconds(clock.uncertainty_ns);
   if (phase_ != Phase::kSubscribed) return stats;
-  stats.policy = NameOf(subscription_.rule);
-  stats.queue_capacity = static_cast<std::uint32_t>(subscription_.queue_ticks);
-  std::uint64_t waiting = queue_.size();
-  const Tick* oldest = queue_.oldest();
-  if (replay_.catch_up != 0) {
-    const TickRing& ring = shared_.publication.ring();
-    const std::uint64_t next =
-        ring.empty() ? replay_.catch_up : std::max(replay_.catch_up, ring.first());
-    const SharedTick* tick = ring.AtOrAfter(next);
-    if (tick != nullptr) {
-      oldest = tick->get();
-      waiting = ring.CountFrom(next);
-    }
-  }
+  stats.policy = NameOf(ticks_.subscription().rule);
+  stats.queue_capacity = static_cast<std::uint32_t>(ticks_.subscription().queue_ticks);
+  const auto [waiting, oldest] = ticks_.Waiting();
   stats.queue_ticks = static_cast<std::uint32_t>(waiting);
   if (oldest != nullptr) stats.lag_s = NanosecondsToSeconds(now_ns - oldest->host_ns);
   return stats;
@@ -125,10 +113,6 @@ bool ConcernsSessions(const v1::Command& command) {
   return command.has_list_sessions() || command.has_end_sessions();
 }
 
-std::chrono::nanoseconds Duration(double seconds) {
-  return std::chrono::nanoseconds(SecondsToNanoseconds(seconds));
-}
-
 std::string Seconds(double seconds) {
   std::string text = std::to_string(seconds);
   text.erase(text.find_last_not_of('0') + 1);
@@ -153,7 +137,8 @@ Session::Session(Socket socket, std::uint64_t number, Shared& shared,
       timer_(connection_.executor()),
       heard_ns_(shared.NowNs()),
       messages_per_s_(shared.options.sessions.session_messages_per_s),
-      answers_(kRememberedAnswers) {
+      answers_(kRememberedAnswers),
+      ticks_(shared.publication, shared.epoch) {
   info_.session = number;
   record_.began_ns = heard_ns_;
   peer_ = PeerOf(connection_.native_handle());
@@ -170,10 +155,9 @@ void Session::StartRefused(v1::Refused::Reason reason, const std::string& messag
 }
 
 void Session::ArmTimer(double seconds) {
-  timer_.expires_after(Duration(seconds));
-  timer_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-    const auto self = weak.lock();
-    if (!error && self) self->OnTimer();
+  timer_.After(seconds, [this] {
+    const auto self = shared_from_this();  // It may end.
+    OnTimer();
   });
 }
 
@@ -441,7 +425,6 @@ void Session::Notify(v1::Notice::Kind kind, const std::string& text, std::uint64
   Send(message);
 }
 
-/// The half of Session that streams: subscription, live ticks, resume and refill.
 namespace {
 
 /// Unanswered requests to refill; each is a few bytes, but there must be an end.
@@ -452,33 +435,146 @@ constexpr double kSubscribeCost = 20;
 constexpr double kReplayCost = 0.02;
 constexpr int kReplayTicksInATurn = 32;
 
+void AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason, WriteBatch& batch) {
+  v1::Envelope message;
+  message.mutable_gap()->set_from_sequence(from);
+  message.mutable_gap()->set_to_sequence(to);
+  message.mutable_gap()->set_reason(reason);
+  batch.AddOwned(Frame(message.SerializeAsString()));
+}
+
+/// Adds the part of the hole in front of a tick that is not before `from`: the rest is known
+/// already.
+void AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch) {
+  from = std::max(from, tick.missing_from);
+  if (tick.missing_from == 0 || from >= tick.sequence) return;
+  AddGap(from, tick.sequence - 1, v1::Gap::REASON_UNSPECIFIED, batch);
+}
+
 }  // namespace
 
-std::uint64_t Session::FirstSequence(const v1::Subscribe& wish) const {
-  const std::uint64_t next = shared_.publication.last_sequence() + 1;
-  const bool resumes = wish.has_from_sequence() && wish.from_epoch() == shared_.epoch;
+std::uint64_t TickStream::FirstSequence(const v1::Subscribe& wish) const {
+  const std::uint64_t next = publication_.last_sequence() + 1;
+  const bool resumes = wish.has_from_sequence() && wish.from_epoch() == epoch_;
   if (!resumes || wish.from_sequence() >= next) return next;
-  const TickRing& ring = shared_.publication.ring();
+  const TickRing& ring = publication_.ring();
   const std::uint64_t oldest = ring.empty() ? next : ring.first();
   return std::max(wish.from_sequence(), oldest);
+}
+
+void TickStream::Begin(Subscription subscription, std::uint64_t first_sequence,
+                       double tick_rate_hz) {
+  dropped_before_ += queue_.dropped_ticks();
+  subscription_ = std::move(subscription);
+  queue_ = TickQueue(subscription_.rule, subscription_.queue_ticks, publication_.retained());
+  decimator_.emplace(subscription_.max_hz, SecondsToNanoseconds(1 / tick_rate_hz));
+  refills_.clear();
+  catch_up_ = first_sequence <= publication_.last_sequence() ? first_sequence : 0;
+}
+
+TickStream::Offered TickStream::Offer(const SharedTick& tick) {
+  if (catch_up_ != 0) return Offered::kFromRing;
+  if (Takes(*tick)) return queue_.Push(tick) ? Offered::kQueued : Offered::kFull;
+  queue_.Skip(tick);
+  return Offered::kLeftOut;
+}
+
+/// For max_hz; the one behind a hole always comes, since the Gap comes with it.
+bool TickStream::Takes(const Tick& tick) {
+  const bool due = decimator_->Take(tick.host_ns);
+  return due || tick.missing_from != 0;
+}
+
+bool TickStream::Refill(std::uint64_t first, std::uint64_t last) {
+  if (refills_.size() >= kMaxRefills) return false;
+  refills_.push_back({first, last});
+  return true;
+}
+
+std::pair<std::size_t, const Tick*> TickStream::Waiting() const {
+  if (catch_up_ == 0) return {queue_.size(), queue_.oldest()};
+  const TickRing& ring = publication_.ring();
+  const std::uint64_t next = ring.empty() ? catch_up_ : std::max(catch_up_, ring.first());
+  const SharedTick* tick = ring.AtOrAfter(next);
+  if (tick == nullptr) return {queue_.size(), queue_.oldest()};
+  return {ring.CountFrom(next), tick->get()};
+}
+
+void TickStream::Add(const TickQueue::Entry& entry, bool refilled, WriteBatch& batch) {
+  TickHead head;
+  head.epoch = epoch_;
+  head.refilled = refilled;
+  AddTick(entry, subscription_, head, batch);
+  ++sent_;
+}
+
+bool TickStream::FillLive(WriteBatch& batch) {
+  TickQueue::Entry entry;
+  if (!queue_.Pop(entry)) return false;
+  const std::uint64_t missing = entry.tick->missing_from;
+  if (const auto dropped = queue_.TakeDropped()) {
+    const std::uint64_t to = missing != 0 ? entry.tick->sequence - 1 : dropped->to;
+    AddGap(dropped->from, to, v1::Gap::REASON_QUEUE_FULL, batch);
+  } else {
+    AddMissing(*entry.tick, 0, batch);
+  }
+  Add(entry, false, batch);
+  return true;
+}
+
+bool TickStream::FillCatchUp(WriteBatch& batch) {
+  if (catch_up_ == 0) return false;
+  const TickRing& ring = publication_.ring();
+  if (catch_up_ > ring.last()) {
+    catch_up_ = 0;
+    return false;
+  }
+  if (catch_up_ < ring.first()) {  // It read so slowly that the ring went past it.
+    AddGap(catch_up_, ring.first() - 1, v1::Gap::REASON_RING_PASSED, batch);
+    catch_up_ = ring.first();
+    return true;
+  }
+  const SharedTick& tick = *ring.AtOrAfter(catch_up_);
+  const std::uint64_t from = std::exchange(catch_up_, tick->sequence + 1);
+  if (Takes(*tick)) {
+    AddMissing(*tick, from, batch);
+    Add({tick, {}}, true, batch);
+  } else {
+    queue_.Skip(tick);
+  }
+  return true;
+}
+
+bool TickStream::FillRefill(WriteBatch& batch) {
+  if (refills_.empty()) return false;
+  Range& range = refills_.front();
+  const TickRing& ring = publication_.ring();
+  if (range.next < ring.first()) {
+    const std::uint64_t gone = std::min(range.last, ring.first() - 1);
+    AddGap(range.next, gone, v1::Gap::REASON_RING_PASSED, batch);
+    range.next = gone + 1;
+  } else {
+    const SharedTick* tick = ring.AtOrAfter(range.next);
+    range.next = range.last + 1;
+    if (tick != nullptr && (*tick)->sequence <= range.last) {
+      Add({*tick, {}}, true, batch);
+      range.next = (*tick)->sequence + 1;
+    }
+  }
+  if (range.next > range.last) refills_.pop_front();
+  return true;
 }
 
 void Session::OnSubscribe(const v1::Subscribe& wish) {
   connection_.Charge(kSubscribeCost - 1);
   EffectiveSubscription settled = Settle(wish, shared_.options);
-  const std::uint64_t first = FirstSequence(wish);
-  const std::uint64_t next = shared_.publication.last_sequence() + 1;
+  const std::uint64_t first = ticks_.FirstSequence(wish);
   settled.answer.set_first_sequence(first);
   v1::Envelope message;
   *message.mutable_subscribed() = settled.answer;
   Send(message);
 
-  record_.ticks_dropped += queue_.dropped_ticks();
-  subscription_ = std::move(settled.subscription);
-  queue_ = TickQueue(subscription_.rule, subscription_.queue_ticks, shared_.publication.retained());
-  decimator_.emplace(subscription_.max_hz, SecondsToNanoseconds(1 / shared_.options.tick_rate_hz));
-  replay_.refills.clear();
-  replay_.catch_up = first < next ? first : 0;
+  ticks_.Begin(std::move(settled.subscription), first, shared_.options.tick_rate_hz);
   SendSnapshot(first - 1);
   if (wish.has_from_sequence()) {
     if (wish.from_epoch() != shared_.epoch) {
@@ -495,7 +591,7 @@ void Session::SendSnapshot(std::uint64_t sequence) {
   const SharedTick tick = shared_.publication.Snapshot(sequence, shared_.NowNs());
   std::string fields;
   for (const Slice& slice : tick->slices) {
-    if (subscription_.fields.count(slice.field) == 0) continue;
+    if (ticks_.subscription().fields.count(slice.field) == 0) continue;
     fields.append(tick->bytes, slice.begin, slice.size);
   }
   TickHead head;
@@ -522,13 +618,12 @@ void Session::OnRefill(const v1::Refill& wish) {
   const std::uint64_t last = std::min(wish.to_sequence(), shared_.publication.last_sequence());
   const std::uint64_t first = std::max<std::uint64_t>(wish.from_sequence(), 1);
   if (first > last) return SayNothingToRefill(wish);
-  if (replay_.refills.size() >= kMaxRefills) {
+  if (!ticks_.Refill(first, last)) {
     return End("this client asks for missing ticks faster than it reads them: " +
                std::to_string(kMaxRefills) +
                " Refills wait; send the next one after the ticks of "
                "an earlier one");
   }
-  replay_.refills.push_back({first, last});
   JoinReplays();
 }
 
@@ -545,56 +640,32 @@ void Session::SayNothingToRefill(const v1::Refill& wish) {
 
 void Session::Offer(const SharedTick& tick) {
   if (phase_ != Phase::kSubscribed || !connection_.open()) return;
-  if (replay_.catch_up != 0) return JoinReplays();  // It will come out of the ring.
-  if (!Takes(*tick)) {
-    queue_.Skip(tick);
-    return;
+  const std::uint64_t dropped_before = ticks_.dropped();
+  switch (ticks_.Offer(tick)) {
+    case TickStream::Offered::kLeftOut:
+      return;
+    case TickStream::Offered::kFromRing:
+      return JoinReplays();
+    case TickStream::Offered::kFull:
+      return End("this client reads too slowly for the policy reliable: " +
+                 std::to_string(ticks_.subscription().queue_ticks) +
+                 " ticks wait; resume from the last sequence received, or use drop_oldest");
+    case TickStream::Offered::kQueued:
+      shared_.statistics.ticks_dropped += ticks_.dropped() - dropped_before;
+      return connection_.Wake();
   }
-  const std::uint64_t dropped_before = queue_.dropped_ticks();
-  if (!queue_.Push(tick)) {
-    return End("this client reads too slowly for the policy reliable: " +
-               std::to_string(subscription_.queue_ticks) +
-               " ticks wait; resume from the last sequence received, or use drop_oldest");
-  }
-  shared_.statistics.ticks_dropped += queue_.dropped_ticks() - dropped_before;
-  connection_.Wake();
-}
-
-/// For max_hz; the one behind a hole always comes, since the Gap comes with it.
-bool Session::Takes(const Tick& tick) {
-  const bool due = decimator_->Take(tick.host_ns);
-  return due || tick.missing_from != 0;
-}
-
-TickHead Session::Head(bool refilled) const {
-  TickHead head;
-  head.epoch = shared_.epoch;
-  head.refilled = refilled;
-  return head;
-}
-
-void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason,
-                     WriteBatch& batch) {
-  v1::Envelope message;
-  message.mutable_gap()->set_from_sequence(from);
-  message.mutable_gap()->set_to_sequence(to);
-  message.mutable_gap()->set_reason(reason);
-  batch.AddOwned(Frame(message.SerializeAsString()));
-}
-
-/// Adds the part of the hole in front of a tick that is not before `from`: the rest is known
-/// already.
-void Session::AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch) {
-  from = std::max(from, tick.missing_from);
-  if (tick.missing_from == 0 || from >= tick.sequence) return;
-  AddGap(from, tick.sequence - 1, v1::Gap::REASON_UNSPECIFIED, batch);
 }
 
 void Session::Fill(WriteBatch& batch) {
   // A tick and a Gap in front of it.
   while (batch.free_buffers() > kBuffersPerTick) {
-    if (FillLive(batch) || FillFromRing(batch)) continue;
-    if (replay_.wanted()) return JoinReplays();
+    if (ticks_.FillLive(batch)) continue;
+    if (replay_allowance_ > 0 && ticks_.FillFromRing(batch)) {
+      --replay_allowance_;
+      connection_.Charge(kReplayCost);
+      continue;
+    }
+    if (ticks_.wants_ring()) return JoinReplays();
     if (!record_.drain_reason.empty() && batch.empty()) EndLater();
     return;
   }
@@ -602,21 +673,15 @@ void Session::Fill(WriteBatch& batch) {
 
 /// In turns with all other sessions, since the ring has far more ticks than the present.
 void Session::JoinReplays() {
-  if (replay_.allowance > 0 || std::exchange(replay_.in_line, true)) return;
+  if (replay_allowance_ > 0 || std::exchange(waits_to_replay_, true)) return;
   shared_.replays->Add([weak = weak_from_this()] {
     const auto self = weak.lock();
     if (!self) return false;
-    self->replay_.in_line = false;
-    self->replay_.allowance = kReplayTicksInATurn;
+    self->waits_to_replay_ = false;
+    self->replay_allowance_ = kReplayTicksInATurn;
     self->connection_.Wake();
     return false;
   });
-}
-
-bool Session::FillFromRing(WriteBatch& batch) {
-  if (replay_.allowance == 0 || !replay_.wanted()) return false;
-  --replay_.allowance;
-  return FillCatchUp(batch) || FillRefill(batch);
 }
 
 void Session::Drain(const std::string& reason) {
@@ -630,68 +695,6 @@ void Session::EndLater() {
   boost::asio::post(connection_.executor(), [weak = weak_from_this()] {
     if (const auto self = weak.lock()) self->End(self->record_.drain_reason);
   });
-}
-
-bool Session::FillLive(WriteBatch& batch) {
-  TickQueue::Entry entry;
-  if (!queue_.Pop(entry)) return false;
-  const std::uint64_t missing = entry.tick->missing_from;
-  if (const auto dropped = queue_.TakeDropped()) {
-    const std::uint64_t to = missing != 0 ? entry.tick->sequence - 1 : dropped->to;
-    AddGap(dropped->from, to, v1::Gap::REASON_QUEUE_FULL, batch);
-  } else {
-    AddMissing(*entry.tick, 0, batch);
-  }
-  AddTick(entry, subscription_, Head(false), batch);
-  ++record_.ticks_sent;
-  return true;
-}
-
-bool Session::FillCatchUp(WriteBatch& batch) {
-  if (replay_.catch_up == 0) return false;
-  const TickRing& ring = shared_.publication.ring();
-  if (replay_.catch_up > ring.last()) {
-    replay_.catch_up = 0;
-    return false;
-  }
-  if (replay_.catch_up < ring.first()) {  // It read so slowly that the ring went past it.
-    AddGap(replay_.catch_up, ring.first() - 1, v1::Gap::REASON_RING_PASSED, batch);
-    replay_.catch_up = ring.first();
-    return true;
-  }
-  const SharedTick& tick = *ring.AtOrAfter(replay_.catch_up);
-  const std::uint64_t from = std::exchange(replay_.catch_up, tick->sequence + 1);
-  connection_.Charge(kReplayCost);
-  if (Takes(*tick)) {
-    AddMissing(*tick, from, batch);
-    AddTick({tick, {}}, subscription_, Head(true), batch);
-    ++record_.ticks_sent;
-  } else {
-    queue_.Skip(tick);
-  }
-  return true;
-}
-
-bool Session::FillRefill(WriteBatch& batch) {
-  if (replay_.refills.empty()) return false;
-  Range& range = replay_.refills.front();
-  const TickRing& ring = shared_.publication.ring();
-  if (range.next < ring.first()) {
-    const std::uint64_t gone = std::min(range.last, ring.first() - 1);
-    AddGap(range.next, gone, v1::Gap::REASON_RING_PASSED, batch);
-    range.next = gone + 1;
-  } else {
-    const SharedTick* tick = ring.AtOrAfter(range.next);
-    range.next = range.last + 1;
-    if (tick != nullptr && (*tick)->sequence <= range.last) {
-      connection_.Charge(kReplayCost);
-      AddTick({*tick, {}}, subscription_, Head(true), batch);
-      ++record_.ticks_sent;
-      range.next = (*tick)->sequence + 1;
-    }
-  }
-  if (range.next > range.last) replay_.refills.pop_front();
-  return true;
 }
 
 namespace {

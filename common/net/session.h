@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/base/result.h"
@@ -43,6 +44,67 @@ class Decimator {
   std::int64_t last_ns_ = INT64_MIN;
 };
 
+/// The ticks that one subscribed session gets: live ones, which wait in its queue, and past ones
+/// out of the ring, after it resumed or asked for a refill. It has neither a connection nor a
+/// clock.
+class TickStream {
+ public:
+  /// Outcome of an offered tick.
+  enum class Offered {
+    kQueued,
+    kLeftOut,   ///< By max_hz.
+    kFromRing,  ///< Live ticks come out of the ring, too, until the client has caught up.
+    kFull,      ///< The client reads too slowly for the policy reliable: it has to end.
+  };
+
+  /// Both outlive it.
+  TickStream(const Publication& publication, const std::uint64_t& epoch)
+      : publication_(publication), epoch_(epoch) {}
+
+  /// The first live tick of a subscription: the next one, or one of the ring where it resumes.
+  std::uint64_t FirstSequence(const v1::Subscribe& wish) const;
+  /// A new subscription takes the place of an earlier one, whose ticks and refills are dropped.
+  void Begin(Subscription subscription, std::uint64_t first_sequence, double tick_rate_hz);
+  Offered Offer(const SharedTick& tick);
+  /// Queues ticks that went by. False when too many requests wait.
+  bool Refill(std::uint64_t first, std::uint64_t last);
+
+  /// Adds the oldest live tick with the gap in front of it. False when none waits.
+  bool FillLive(WriteBatch& batch);
+  /// Whether FillFromRing has something to do.
+  bool wants_ring() const { return catch_up_ != 0 || !refills_.empty(); }
+  /// Adds a tick, or the gap where the ring has passed. False when there is nothing more.
+  bool FillFromRing(WriteBatch& batch) { return FillCatchUp(batch) || FillRefill(batch); }
+
+  const Subscription& subscription() const { return subscription_; }
+  /// The ticks that wait, and the oldest of them; null: none.
+  std::pair<std::size_t, const Tick*> Waiting() const;
+  std::uint64_t sent() const { return sent_; }
+  std::uint64_t dropped() const { return dropped_before_ + queue_.dropped_ticks(); }
+
+ private:
+  struct Range {
+    std::uint64_t next = 0;
+    std::uint64_t last = 0;
+  };
+
+  bool Takes(const Tick& tick);
+  bool FillCatchUp(WriteBatch& batch);
+  bool FillRefill(WriteBatch& batch);
+  void Add(const TickQueue::Entry& entry, bool refilled, WriteBatch& batch);
+
+  const Publication& publication_;
+  const std::uint64_t& epoch_;
+  Subscription subscription_;
+  TickQueue queue_;
+  std::optional<Decimator> decimator_;
+  /// While not 0 live ticks come out of the ring, from this sequence on, until it is caught up.
+  std::uint64_t catch_up_ = 0;
+  std::deque<Range> refills_;
+  std::uint64_t sent_ = 0;            ///< Handed to the socket.
+  std::uint64_t dropped_before_ = 0;  ///< By queues of earlier subscriptions.
+};
+
 /// Counts and measurements of a session about itself. A plain value.
 struct SessionRecord {
   /// The server's own ping, once a second: it shows that the client lives, and its clock.
@@ -55,8 +117,6 @@ struct SessionRecord {
   std::int64_t began_ns = 0;
   std::uint64_t slowed = 0;          ///< Times that it had to wait for its budget.
   std::int64_t slowed_until_ns = 0;  ///< The end of the last of these times; 0: it never had to.
-  std::uint64_t ticks_sent = 0;      ///< Handed to the socket.
-  std::uint64_t ticks_dropped = 0;   ///< Ticks of queues of earlier subscriptions.
   std::string drain_reason;          ///< The reason for which it is drained; empty: it is not.
   OwnPing ping;
   ClockOffsetEstimator clock;  ///< Offset of the client's clock.
@@ -107,7 +167,7 @@ struct Shared {
 /// One client's connection on the server's side, from Hello to Goodbye.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  /// `on_end` is called once, from the io loop. Held by a shared_ptr, which its timer asks about.
+  /// `on_end` is called once, from the io loop. Held by a shared_ptr, which its timer prolongs.
   Session(Socket socket, std::uint64_t number, Shared& shared,
           std::function<void(Session&)> on_end);
   Session(const Session&) = delete;
@@ -160,20 +220,6 @@ class Session : public std::enable_shared_from_this<Session> {
 
  private:
   enum class Phase { kHello, kGuessed, kWelcomed, kSubscribed, kRefused };
-  struct Range {
-    std::uint64_t next = 0;
-    std::uint64_t last = 0;
-  };
-  /// Ticks that are to come out of the ring, a few whenever it is this session's turn.
-  struct Replay {
-    /// While not 0 live ticks come out of the ring, from this sequence on, until it is caught up.
-    std::uint64_t catch_up = 0;
-    std::deque<Range> refills;
-    int allowance = 0;  ///< Ticks that may still go out in this turn.
-    bool in_line = false;
-
-    bool wanted() const { return catch_up != 0 || !refills.empty(); }
-  };
 
   void OnFrame(std::string_view payload);
   void OnSlowed(double wait_s);
@@ -186,7 +232,6 @@ class Session : public std::enable_shared_from_this<Session> {
   void OnCommand(const v1::Command& command, std::int64_t arrived_ns);
   std::optional<v1::CommandResult> Carry(const v1::Command& command, std::int64_t arrived_ns);
 
-  std::uint64_t FirstSequence(const v1::Subscribe& wish) const;
   void SendSnapshot(std::uint64_t sequence);
   void SendGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason);
   /// A full queue of answers ends the session: it takes nothing that it asked for.
@@ -195,15 +240,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   void EndLater();
   void Fill(WriteBatch& batch);
-  bool FillLive(WriteBatch& batch);
-  bool FillFromRing(WriteBatch& batch);
   void JoinReplays();
-  bool FillCatchUp(WriteBatch& batch);
-  bool FillRefill(WriteBatch& batch);
-  void AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason, WriteBatch& batch);
-  void AddMissing(const Tick& tick, std::uint64_t from, WriteBatch& batch);
-  bool Takes(const Tick& tick);
-  TickHead Head(bool refilled) const;
 
   void Refused(v1::Refused::Reason reason, const std::string& message);
   void BadMessage(const std::string& why);
@@ -228,10 +265,9 @@ class Session : public std::enable_shared_from_this<Session> {
   Answers answers_;
   std::set<std::uint64_t> open_commands_;  ///< Being carried out; their answers come later.
 
-  Subscription subscription_;
-  TickQueue queue_;
-  std::optional<Decimator> decimator_;
-  Replay replay_;
+  TickStream ticks_;
+  int replay_allowance_ = 0;      ///< Ticks of the ring that may still go out in this turn.
+  bool waits_to_replay_ = false;  ///< For its turn.
 };
 
 /// All sessions of one server, in the order of their numbers: which have a place, and which an

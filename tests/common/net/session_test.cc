@@ -26,6 +26,33 @@ std::string ProblemOf(const std::function<void(v1::Command&)>& set) {
   return checked ? "" : checked.error().message;
 }
 
+TEST(TickStream, WhoResumesGetsTheRingBeforeLiveTicks) {
+  const ServerOptions options;
+  Publication publication(options);
+  const auto publish = [&] {
+    const SharedTick tick = publication.Publish(publication.Next(1'000'000), {});
+    publication.Keep(tick);
+    return tick;
+  };
+  for (int i = 0; i < 3; ++i) publish();
+  const std::uint64_t epoch = 5;
+  TickStream stream(publication, epoch);
+  v1::Subscribe wish;
+  wish.set_from_epoch(epoch);
+  wish.set_from_sequence(2);
+  EXPECT_EQ(stream.FirstSequence(wish), 2u);
+  stream.Begin(Settle(wish, options).subscription, 2, options.tick_rate_hz);
+  EXPECT_EQ(stream.Waiting().first, 2u);
+  EXPECT_EQ(stream.Offer(publish()), TickStream::Offered::kFromRing);
+  WriteBatch batch;
+  EXPECT_FALSE(stream.FillLive(batch));
+  while (stream.wants_ring()) stream.FillFromRing(batch);
+  EXPECT_EQ(stream.sent(), 3u);
+  EXPECT_EQ(stream.Offer(publish()), TickStream::Offered::kQueued);
+  EXPECT_TRUE(stream.FillLive(batch));
+  EXPECT_EQ(stream.sent(), 4u);
+}
+
 TEST(CommandContent, EveryTextIsPrintable) {
   for (const std::string text : {"a\nb", "\x1b[2J", "a\x7f", "\u009b2J", "\t"}) {
     const std::vector<std::function<void(v1::Command&)>> all = {
