@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -49,8 +50,43 @@ struct Config {
   void Bind(config::Binder& binder);
 };
 
+/// An engine with its two hand-overs, as SimulationThread runs it (GaitRun, PoseRun). A Frame
+/// counts overruns and the frames that were left out.
+template <typename T>
+concept EngineRun = requires(T run, exchange::Latest<typename T::Inputs>& inputs,
+                             typename T::Frame& frame) {
+  run.StepOnSimThread(inputs, frame);  // Advances by one step.
+  run.FillOnSimThread(frame);          // Before the frame is handed over.
+  run.TakenOnSimThread(frame);         // After it was; not when the queue was full.
+  requires std::same_as<decltype(frame.overruns), std::uint64_t>;
+  requires std::same_as<decltype(frame.left_out), std::uint64_t>;
+};
+
+template <EngineRun Run>
+class SimulationThread;
+
+/// An engine on its thread with its channels and commands, as Serving serves it (GaitLine,
+/// PoseLine).
+template <typename T>
+concept EngineLine = EngineRun<typename T::Run> &&
+    requires(T line, const T& constant, const v1::Tick& tick, std::int64_t now_ns,
+             const transport::SessionInfo& who, const v1::Command& command,
+             const typename T::Run::Frame& frame) {
+  { T::Channels() } -> std::same_as<std::vector<transport::Channel>>;
+  { T::SensorChannels() } -> std::same_as<std::vector<std::string>>;  // Those of footingd.
+  { T::kSensorPolicy } -> std::convertible_to<v1::QueuePolicy>;
+  { constant.Capabilities() } -> std::same_as<std::vector<std::string>>;
+  { constant.frame_rate_hz() } -> std::same_as<double>;
+  { constant.Retained() } -> std::same_as<std::vector<transport::ChannelBytes>>;
+  { line.thread() } -> std::same_as<SimulationThread<typename T::Run>&>;
+  { line.OnFrame(frame, now_ns) } -> std::same_as<std::vector<transport::ChannelBytes>>;
+  { line.OnCommand(who, command) } -> std::same_as<v1::CommandResult>;
+  line.OnTick(tick, now_ns);
+  line.OnSessionEnd(who);
+};
+
 /// Sockets around one engine's line: ticks of footingd to it, its frames to the clients.
-template <typename Line>
+template <EngineLine Line>
 class Serving : public std::enable_shared_from_this<Serving<Line>> {
  public:
   Serving(boost::asio::io_context& io, std::unique_ptr<Line> line, const Config& config,
@@ -206,7 +242,7 @@ struct Served {
 };
 
 /// Makes the line with `make_line(wake_descriptor)` and starts it.
-template <typename Line, typename MakeLine>
+template <EngineLine Line, typename MakeLine>
 Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
                             const MakeLine& make_line) {
   const int wake_descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
@@ -227,7 +263,7 @@ Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
 }
 
 /// Checks of StartServing besides the config itself, without its sockets and its thread.
-template <typename Line, typename MakeLine>
+template <EngineLine Line, typename MakeLine>
 Result<void> CheckServing(const Config& config, const MakeLine& make_line) {
   if (auto access = config.access.CheckStart(config.listen); !access) return access;
   constexpr int kNobodyToWake = -1;
@@ -248,15 +284,10 @@ nlohmann::ordered_json EffectiveSettings(Config common, const char* engine, Engi
           {"settings", nlohmann::ordered_json::parse(binder.Print())}};
 }
 
-/// Runs one engine in real time on a thread of its own.
-///
-/// `Run` is the engine with its two hand-overs (GaitRun, PoseRun): it names the types `Inputs` and
-/// `Frame`, advances by one step with StepOnSimThread(inputs, frame), and has
-/// FillOnSimThread(frame) before and TakenOnSimThread(frame) after the frame was handed over. A
-/// Frame has the counts `overruns` and `left_out` (frames). After Start the thread allocates, locks
-/// and logs nothing. It meets the io thread at `inputs`, `frames`, and one write to
-/// `wake_descriptor` (an eventfd) per frame, and where the run itself has a queue.
-template <typename Run>
+/// Runs one engine in real time on a thread of its own. After Start the thread allocates, locks and
+/// logs nothing. It meets the io thread at `inputs`, `frames`, and one write to `wake_descriptor`
+/// (an eventfd) per frame, and where the run itself has a queue.
+template <EngineRun Run>
 class SimulationThread {
  public:
   using Inputs = typename Run::Inputs;
