@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -22,6 +21,7 @@
 #include "common/base/json_text.h"
 #include "common/base/text.h"
 #include "common/cli/cli.h"
+#include "common/frames/camera_file.h"
 #include "common/net/address.h"
 #include "common/net/discovery.h"
 #include "common/runtime/files.h"
@@ -219,15 +219,6 @@ std::optional<std::uint32_t> ParseLeds(const std::string& text) {
   return leds;
 }
 
-std::optional<std::uint32_t> ParseColour(const std::string& text) {
-  if (text.size() != 7 || text[0] != '#') return std::nullopt;
-  std::uint32_t rgb = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data() + 1, end, rgb, 16);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return rgb;
-}
-
 Result<void> Rumble(Connection& session, const std::string& name, double seconds,
                     const Shared& shared) {
   const auto device = session.Find(name);
@@ -251,14 +242,14 @@ Result<void> Rumble(Connection& session, const std::string& name, double seconds
 }
 
 Result<void> CheckLight(const std::string& light) {
-  if (ParseLeds(light) || ParseColour(light)) return {};
+  if (ParseLeds(light) || frames::ParseColour(light)) return {};
   return UsageError(light + " is neither four LEDs such as 1010 nor a colour such as #00ff40");
 }
 
 Result<void> Led(Connection& session, const std::string& name, const std::string& light,
                  const Shared& shared) {
   const auto leds = ParseLeds(light);
-  const auto colour = ParseColour(light);
+  const auto colour = frames::ParseColour(light);
   const auto device = session.Find(name);
   if (!device) return device.error();
   const bool move = device->kind == stream::DeviceKind::kPsMove;

@@ -94,15 +94,6 @@ class Reader {
   std::string problem_;
 };
 
-std::optional<std::uint32_t> ParseColour(const std::string& text) {
-  if (text.size() != 7 || text[0] != '#') return std::nullopt;
-  std::uint32_t rgb = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data() + 1, end, rgb, 16);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return rgb;
-}
-
 Result<HeldSphere> ReadSphere(const json& object, const std::string& place) {
   HeldSphere sphere;
   Reader reader(object, place);
@@ -243,6 +234,15 @@ Result<CameraFile> Parse(const std::string& text, const std::string& origin, boo
 }
 
 }  // namespace
+
+std::optional<std::uint32_t> ParseColour(const std::string& text) {
+  if (text.size() != 7 || text[0] != '#') return std::nullopt;
+  std::uint32_t rgb = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + 1, end, rgb, 16);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return rgb;
+}
 
 std::vector<sphere::Target> CameraFile::Targets() const {
   std::vector<sphere::Target> targets;

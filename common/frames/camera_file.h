@@ -64,6 +64,8 @@ Result<void> StoreLens(const std::string& path, const CameraFile& camera);
 
 /// "#ff00c8", as footing-ctl led takes it.
 std::string ColourText(std::uint32_t rgb);
+/// The same in the other direction; nothing for any other text.
+std::optional<std::uint32_t> ParseColour(const std::string& text);
 
 /// A frame and when its middle row was exposed.
 struct Frame {
