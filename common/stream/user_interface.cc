@@ -14,6 +14,22 @@ TurnSource LegTurnSourceNamed(const std::string& name) {
   return TurnSource::kUnspecified;
 }
 
+std::uint32_t DrivingRoles(UserInterface interface) {
+  switch (interface) {
+    case UserInterface::kUnspecified:
+      return 0;
+    case UserInterface::kWrist:
+    case UserInterface::kArm:
+    case UserInterface::kJoystick:
+      return RoleBit(DeviceRole::kLeftHand) | RoleBit(DeviceRole::kRightHand);
+    case UserInterface::kLeg:
+      return RoleBit(DeviceRole::kLeftLeg) | RoleBit(DeviceRole::kRightLeg);
+    case UserInterface::kBoards:
+      return RoleBit(DeviceRole::kLeftBoard) | RoleBit(DeviceRole::kRightBoard);
+  }
+  return 0;
+}
+
 std::string RoleNames(std::uint32_t roles) {
   std::string names;
   for (const DeviceRole role : kDeviceRoles) {

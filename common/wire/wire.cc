@@ -1,8 +1,13 @@
 #include "common/wire/wire.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
+#include "common/rig/follower.h"
 #include "common/wire/scalar.h"
+#include "footing/v1/session.pb.h"
 
 namespace footing::wire {
 namespace {
@@ -78,6 +83,71 @@ stream::ReferenceFrame FromProto(const v1::ReferenceFrame& message) {
   }
   value.com_m = Triple(message.com_m(), 0);
   return value;
+}
+
+namespace {
+
+bool IsFinite(const v1::Vector3& v) {
+  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+bool IsFinite(const v1::MotionSample& sample) {
+  return IsFinite(sample.specific_force_mps2()) && IsFinite(sample.angular_velocity_radps());
+}
+
+bool IsFinite(const v1::NunchukSample& sample) {
+  return std::isfinite(sample.stick_x()) && std::isfinite(sample.stick_y());
+}
+
+bool IsFinite(const v1::BoardSample& sample) {
+  return std::isfinite(sample.top_left_n()) && std::isfinite(sample.top_right_n()) &&
+         std::isfinite(sample.bottom_left_n()) && std::isfinite(sample.bottom_right_n()) &&
+         std::isfinite(sample.cop_x_m()) && std::isfinite(sample.cop_y_m());
+}
+
+/// The place of a point that was not seen means nothing.
+bool IsFinite(const v1::HandSample& sample) {
+  return sample.confidence() == 0 || (IsFinite(sample.position_m()) && IsFinite(sample.sd_m()) &&
+                                      IsFinite(sample.covariance_m2()));
+}
+
+bool IsFinite(const v1::ContactSample& sample) {
+  return std::all_of(sample.cells().begin(), sample.cells().end(), [](const v1::ContactCell& cell) {
+    return std::isfinite(cell.x_m()) && std::isfinite(cell.y_m()) && std::isfinite(cell.load_n());
+  });
+}
+
+/// Features and what has no samples: FromProto makes its numbers finite.
+template <typename Message>
+bool IsFinite(const Message&) {
+  return true;
+}
+
+template <typename Messages, typename Value>
+void Append(const Messages& messages, std::vector<Value>& values) {
+  for (const auto& message : messages) {
+    if (IsFinite(message)) values.push_back(wire::FromProto(message));
+  }
+}
+
+}  // namespace
+
+rig::Tick SensorTick(const v1::Tick& message) {
+  rig::Tick tick;
+  tick.epoch = message.epoch();
+  tick.sequence = message.sequence();
+  tick.host_ns = message.host_ns();
+  tick.snapshot = message.snapshot();
+  tick.refilled = message.refilled();
+  if (message.has_status()) Append(message.status().devices(), tick.devices.emplace());
+  if (message.has_setup()) Append(message.setup().rigs(), tick.setup.emplace());
+  Append(message.motion().samples(), tick.motion);
+  Append(message.nunchuk().samples(), tick.nunchuks);
+  Append(message.features().rigs(), tick.features);
+  Append(message.boards().samples(), tick.boards);
+  Append(message.hands().samples(), tick.hands);
+  Append(message.contacts().samples(), tick.contacts);
+  return tick;
 }
 
 }  // namespace footing::wire

@@ -15,6 +15,13 @@
 /// UTF-8. HandFrame, ReferenceFrame and ContactFrame come in as they are, with what is not finite:
 /// footingd checks and refuses them. messages.h has the pairs that are 1:1 by proto/structs.toml;
 /// the rest stands here.
+namespace footing::rig {
+struct Tick;
+}  // namespace footing::rig
+namespace footing::v1 {
+class Tick;
+}  // namespace footing::v1
+
 namespace footing::wire {
 
 void Write(const Eigen::Vector3d& value, v1::Vector3& message);
@@ -28,5 +35,9 @@ Eigen::Quaterniond FromProto(const v1::Quaternion& message);
 /// them.
 v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value);
 stream::ReferenceFrame FromProto(const v1::ReferenceFrame& message);
+
+/// The channels of a tick of which a rig::Tick consists. Samples of forces, places and directions
+/// that are not finite are left out.
+rig::Tick SensorTick(const v1::Tick& message);
 
 }  // namespace footing::wire

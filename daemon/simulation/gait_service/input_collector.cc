@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "common/base/units.h"
 #include "common/board/geometry.h"
-#include "common/board/layout.h"
 #include "common/wire/wire.h"
 #include "daemon/simulation/serving/messages.h"
 
@@ -14,75 +14,56 @@ namespace footing::gait_service {
 namespace {
 
 using stream::DeviceRole;
+using stream::DeviceStatus;
+using stream::Extension;
 using stream::UserInterface;
 
 /// Bit in a Wiimote's two button bytes, as MotionSample has them.
 constexpr std::uint32_t kButtonA = 0x0008;
 
-DeviceRole RoleIn(v1::DeviceRole role) {
-  return v1::DeviceRole_IsValid(role) ? static_cast<DeviceRole>(role) : DeviceRole::kUnspecified;
-}
-
-bool IsFinite(const v1::BoardSample& sample) {
-  return std::isfinite(sample.top_left_n()) && std::isfinite(sample.top_right_n()) &&
-         std::isfinite(sample.bottom_left_n()) && std::isfinite(sample.bottom_right_n()) &&
-         std::isfinite(sample.cop_x_m()) && std::isfinite(sample.cop_y_m());
-}
-
-bool HasNunchuk(const v1::DeviceStatus& device) {
-  return device.extension() == v1::EXTENSION_NUNCHUK ||
-         device.extension() == v1::EXTENSION_MOTION_PLUS_NUNCHUK;
+bool HasNunchuk(const DeviceStatus& device) {
+  return device.extension == Extension::kNunchuk ||
+         device.extension == Extension::kMotionPlusNunchuk;
 }
 
 /// Whether the device can have what the interface reads: a stick is that of a Nunchuk. One that has
 /// not said yet what is plugged in may have it.
-bool MayServe(const v1::DeviceStatus& device, UserInterface interface) {
-  if (interface != UserInterface::kJoystick) return true;
-  return device.extension() == v1::EXTENSION_UNSPECIFIED || HasNunchuk(device);
+bool MayServe(const DeviceStatus& device, UserInterface interface) {
+  return interface != UserInterface::kJoystick || device.extension == Extension::kUnspecified ||
+         HasNunchuk(device);
 }
 
 /// A sample that is used as it is: decoded when it arrived, it then waited for its tick.
-FeatureStamps OfSample(std::int64_t received_ns, const v1::Tick& tick) {
-  return {0, received_ns, received_ns, tick.host_ns(), 0};
+FeatureStamps OfSample(std::int64_t received_ns, const rig::Tick& tick) {
+  return {0, received_ns, received_ns, tick.host_ns, 0};
 }
 
 }  // namespace
 
-InputCollector::InputCollector(std::string rig, const mapping::InterfaceOptions& options)
-    : wanted_rig_(std::move(rig)), options_(options), rig_(wanted_rig_) {}
-
-bool InputCollector::Follows(const std::string& rig, DeviceRole role) {
-  if (rig_.empty() && mapping::Uses(options_, role)) rig_ = rig;
-  return !rig_.empty() && rig == rig_;
-}
-
-DeviceRole InputCollector::RoleOf(std::uint32_t device) const {
-  const auto found = bound_.find(device);
-  return found == bound_.end() ? DeviceRole::kUnspecified : found->second.role;
-}
-
 Result<std::string> InputCollector::RigFor(const mapping::InterfaceOptions& options) const {
   std::map<std::string, std::uint32_t> roles;  // Roles in each rig.
-  if (!rig_.empty()) roles[rig_] = 0;
-  for (const v1::DeviceStatus& device : status_.devices()) {
-    const bool usable = device.state() != v1::DEVICE_STATE_LOST;
+  const std::string& followed = sensors_.rig();
+  if (!followed.empty()) roles[followed] = 0;
+  for (const DeviceStatus& device : sensors_.devices()) {
+    const bool usable = device.state != stream::DeviceState::kLost;
     if (usable && MayServe(device, options.interface) &&
-        (wanted_rig_.empty() || device.rig() == wanted_rig_)) {
-      roles[device.rig()] |= stream::RoleBit(RoleIn(device.role()));
+        (sensors_.wanted_rig().empty() || device.rig == sensors_.wanted_rig())) {
+      roles[device.rig] |= stream::RoleBit(device.role);
     }
   }
-  const std::uint32_t missing = mapping::MissingRoles(options, rig_.empty() ? 0 : roles[rig_]);
-  if (missing == 0) return rig_;
+  const std::uint32_t missing =
+      mapping::MissingRoles(options, followed.empty() ? 0 : roles[followed]);
+  if (missing == 0) return followed;
   for (const auto& [rig, present] : roles) {
     if (mapping::MissingRoles(options, present) == 0) return rig;
   }
   if (options.interface == UserInterface::kJoystick) {
     return Failure(
-        (rig_.empty() ? "there is no" : "the rig " + rig_ + " has no") +
+        (followed.empty() ? "there is no" : "the rig " + followed + " has no") +
         std::string(" Wiimote in a hand with a Nunchuk plugged in; plug one in, or give "
                     "its Wiimote the role left_hand or right_hand (footing-ctl assign)"));
   }
-  return Failure((rig_.empty() ? "there is no " : "the rig " + rig_ + " lacks ") +
+  return Failure((followed.empty() ? "there is no " : "the rig " + followed + " lacks ") +
                  stream::RoleNames(missing) +
                  "; connect the devices, or give them these roles (footing-ctl assign)");
 }
@@ -91,31 +72,20 @@ Result<void> InputCollector::Use(const mapping::InterfaceOptions& options) {
   const Result<std::string> rig = RigFor(options);
   if (!rig) return rig.error();
   options_ = options;
-  rig_ = *rig;
+  sensors_.GoTo(*rig, stream::DrivingRoles(options.interface));
   inputs_ = {};
   stamps_ = {};
-  Bind();
+  if (options_.interface == UserInterface::kJoystick) inputs_.stick.role = StickRole();
   return {};
 }
 
-void InputCollector::Bind() {
-  bound_.clear();
-  for (const v1::DeviceStatus& device : status_.devices()) {
-    const DeviceRole role = RoleIn(device.role());
-    if (Follows(device.rig(), role)) bound_[device.device()] = {role, device.mounted()};
-  }
-  if (options_.interface == UserInterface::kJoystick) inputs_.stick.role = StickRole();
-}
-
 DeviceRole InputCollector::StickRole() const {
-  if (stick_device_ != 0 && mapping::Uses(options_, RoleOf(stick_device_))) {
-    return RoleOf(stick_device_);
-  }
-  DeviceRole role = DeviceRole::kUnspecified;
+  DeviceRole role = sensors_.RoleOf(stick_device_);
+  if (role != DeviceRole::kUnspecified) return role;
   int hands = 0;
-  for (const v1::DeviceStatus& device : status_.devices()) {
-    const DeviceRole hand = RoleOf(device.device());
-    if (!mapping::Uses(options_, hand) || !MayServe(device, options_.interface)) continue;
+  for (const DeviceStatus& device : sensors_.devices()) {
+    const DeviceRole hand = sensors_.RoleOf(device.device);
+    if (hand == DeviceRole::kUnspecified || !MayServe(device, options_.interface)) continue;
     if (HasNunchuk(device)) return hand;
     role = hand;
     ++hands;
@@ -123,44 +93,35 @@ DeviceRole InputCollector::StickRole() const {
   return hands == 1 ? role : DeviceRole::kUnspecified;
 }
 
-bool InputCollector::TakeFeatures(const v1::FeatureFrame& frame) {
-  for (const v1::RigFeatures& message : frame.rigs()) {
-    const stream::RigFeatures rig = wire::FromProto(message);
-    bool follows = false;
-    for (const auto& device : rig.devices) follows |= Follows(rig.rig, device.role);
-    if (!follows) continue;
-    std::uint32_t mounted_roles = 0;
-    for (const auto& [device, bound] : bound_) {
-      if (bound.mounted) mounted_roles |= stream::RoleBit(bound.role);
-    }
-    mapping::TakeFeatures(rig, mounted_roles, inputs_);
-    stamps_ = {0, rig.newest_received_ns, rig.decoded_ns, rig.computed_ns, 0};
-    return true;
-  }
-  return false;
+bool InputCollector::TakeFeatures(const rig::Tick& tick) {
+  const stream::RigFeatures* rig = sensors_.FeaturesIn(tick);
+  if (rig == nullptr) return false;
+  mapping::TakeFeatures(*rig, sensors_.MountedRoles(), inputs_);
+  stamps_ = {0, rig->newest_received_ns, rig->decoded_ns, rig->computed_ns, 0};
+  return true;
 }
 
 /// The stick of the rig's first hand that has one; its Wiimote's buttons come as samples of their
 /// own, and each press counts, also when it is over within one tick.
-bool InputCollector::TakeStick(const v1::Tick& tick, std::int64_t now_ns) {
+bool InputCollector::TakeStick(const rig::Tick& tick, std::int64_t now_ns) {
   mapping::StickInput& stick = inputs_.stick;
   bool taken = false;
-  for (const v1::NunchukSample& sample : tick.nunchuk().samples()) {
-    if (!mapping::Uses(options_, RoleOf(sample.device()))) continue;
-    if (!std::isfinite(sample.stick_x()) || !std::isfinite(sample.stick_y())) continue;
-    if (stick.present && sample.device() != stick_device_) continue;
-    stick_device_ = sample.device();
+  for (const stream::NunchukSample& sample : tick.nunchuks) {
+    const DeviceRole role = sensors_.RoleOf(sample.device);
+    if (role == DeviceRole::kUnspecified || (stick.present && sample.device != stick_device_))
+      continue;
+    stick_device_ = sample.device;
     stick.present = true;
-    stick.role = RoleOf(stick_device_);
-    stick.x = sample.stick_x();
-    stick.y = sample.stick_y();
-    stick_ = {now_ns, sample.simulated()};
-    stamps_ = OfSample(sample.received_ns(), tick);
+    stick.role = role;
+    stick.x = sample.stick_x;
+    stick.y = sample.stick_y;
+    stick_ = {true, now_ns, sample.simulated};
+    stamps_ = OfSample(sample.received_ns, tick);
     taken = true;
   }
-  for (const v1::MotionSample& sample : tick.motion().samples()) {
-    if (!stick.present || sample.device() != stick_device_) continue;
-    const bool pressed = (sample.buttons() & kButtonA) != 0;
+  for (const stream::MotionSample& sample : tick.motion) {
+    if (!stick.present || sample.device != stick_device_) continue;
+    const bool pressed = (sample.buttons & kButtonA) != 0;
     if (pressed && !stick.pressed) ++stick.presses;
     stick.pressed = pressed;
     taken = true;
@@ -168,28 +129,24 @@ bool InputCollector::TakeStick(const v1::Tick& tick, std::int64_t now_ns) {
   return taken;
 }
 
-bool InputCollector::TakeBoards(const v1::Tick& tick, std::int64_t now_ns) {
+bool InputCollector::TakeBoards(const rig::Tick& tick, std::int64_t now_ns) {
   bool taken = false;
-  for (const v1::BoardSample& sample : tick.boards().samples()) {
-    const DeviceRole role = RoleOf(sample.device());
-    if (!mapping::Uses(options_, role) || !IsFinite(sample)) continue;
-    stream::BoardLayout layout;
-    for (const v1::RigSetup& message : setup_.rigs()) {
-      if (message.rig() == rig_) layout = wire::FromProto(message).layout;
-    }
-    layout = board::LayoutOr(layout);
+  for (const stream::BoardSample& sample : tick.boards) {
+    const DeviceRole role = sensors_.RoleOf(sample.device);
+    if (role == DeviceRole::kUnspecified) continue;
+    const stream::BoardLayout layout = sensors_.Layout();
     const bool left = role == DeviceRole::kLeftBoard;
     const Eigen::Vector2d cop_W_m =
-        board::InWorld(left ? layout.left : layout.right, sample.cop_x_m(), sample.cop_y_m());
+        board::InWorld(left ? layout.left : layout.right, sample.cop_x_m, sample.cop_y_m);
     (left ? inputs_.left_board : inputs_.right_board) = {
         .present = true,
-        .corners_n = {sample.top_left_n(), sample.top_right_n(), sample.bottom_left_n(),
-                      sample.bottom_right_n()},
-        .cop_valid = sample.cop_valid(),
+        .corners_n = {sample.top_left_n, sample.top_right_n, sample.bottom_left_n,
+                      sample.bottom_right_n},
+        .cop_valid = sample.cop_valid,
         .cop_x_m = cop_W_m.x(),
         .cop_y_m = cop_W_m.y()};
-    (left ? left_board_ : right_board_) = {now_ns, sample.simulated()};
-    stamps_ = OfSample(sample.received_ns(), tick);
+    (left ? left_board_ : right_board_) = {true, now_ns, sample.simulated};
+    stamps_ = OfSample(sample.received_ns, tick);
     taken = true;
   }
   return taken;
@@ -197,8 +154,8 @@ bool InputCollector::TakeBoards(const v1::Tick& tick, std::int64_t now_ns) {
 
 bool InputCollector::Expire(std::int64_t now_ns) {
   bool ended = false;
-  const auto expire = [&](const Age& age, auto& input) {
-    if (!input.present || NanosecondsToSeconds(now_ns - age.seen_ns) <= kTimeoutS) return;
+  const auto expire = [&](const rig::LastHeard& heard, auto& input) {
+    if (!input.present || heard.IsLive(now_ns, kTimeoutS)) return;
     input = {};
     ended = true;
   };
@@ -212,30 +169,24 @@ bool InputCollector::Expire(std::int64_t now_ns) {
   return ended;
 }
 
-bool InputCollector::Take(const v1::Tick& tick, std::int64_t now_ns) {
-  if (tick.epoch() != epoch_) {
-    epoch_ = tick.epoch();
-    rig_ = wanted_rig_;
-    status_.Clear();
-    bound_.clear();
-    stick_device_ = 0;
+bool InputCollector::Take(const v1::Tick& message, std::int64_t now_ns) {
+  const rig::Tick tick = wire::SensorTick(message);
+  const rig::Changes changes = sensors_.Take(tick);
+  if (changes.restarted) stick_device_ = 0;
+  if (changes.devices && options_.interface == UserInterface::kJoystick) {
+    inputs_.stick.role = StickRole();
   }
-  if (tick.has_status()) {
-    status_ = tick.status();
-    Bind();
-  }
-  if (tick.has_setup()) setup_ = tick.setup();
-  if (tick.snapshot()) return false;
+  if (tick.snapshot) return false;
   switch (options_.interface) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:
     case UserInterface::kArm:
     case UserInterface::kLeg:
-      if (tick.has_features() && TakeFeatures(tick.features())) {
-        features_.seen_ns = now_ns;
+      if (TakeFeatures(tick)) {
+        features_ = {true, now_ns, false};
         return true;
       }
-      if (NanosecondsToSeconds(now_ns - features_.seen_ns) > kFeaturesTimeoutS) inputs_ = {};
+      if (!features_.IsLive(now_ns, kFeaturesTimeoutS)) inputs_ = {};
       return false;
     case UserInterface::kJoystick:
     case UserInterface::kBoards:

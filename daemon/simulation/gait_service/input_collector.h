@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/base/result.h"
+#include "common/rig/follower.h"
 #include "common/runtime/exchange.h"
-#include "common/stream/setup.h"
+#include "common/stream/user_interface.h"
 #include "daemon/simulation/gait_service/publish.h"
 #include "daemon/simulation/mapping/any_interface.h"
 #include "footing/v1/command.pb.h"
@@ -24,7 +26,8 @@ class InputCollector {
   static constexpr double kFeaturesTimeoutS = 0.5;
 
   /// `rig` empty: the first rig with a device that the interface uses.
-  InputCollector(std::string rig, const mapping::InterfaceOptions& options);
+  InputCollector(std::string rig, const mapping::InterfaceOptions& options)
+      : options_(options), sensors_(std::move(rig), stream::DrivingRoles(options.interface)) {}
 
   /// Goes over to another interface: on the rig that it follows or, where the constructor named
   /// none, on the first one that has the roles for it. Fails, and names what is missing, when none
@@ -34,7 +37,7 @@ class InputCollector {
   /// Takes a live tick or a snapshot in; true when it brought, or ended, something of the rig.
   bool Take(const v1::Tick& tick, std::int64_t now_ns);
 
-  const std::string& rig() const { return rig_; }
+  const std::string& rig() const { return sensors_.rig(); }
   const mapping::InterfaceOptions& options() const { return options_; }
   const mapping::Inputs& inputs() const { return inputs_; }
   /// When the newest of it was made; its number is not filled in. Of a stick and a board only
@@ -42,40 +45,22 @@ class InputCollector {
   const FeatureStamps& stamps() const { return stamps_; }
 
  private:
-  struct Bound {
-    stream::DeviceRole role = stream::DeviceRole::kUnspecified;
-    bool mounted = false;
-  };
-  struct Age {
-    std::int64_t seen_ns = 0;
-    bool simulated = false;
-  };
-
-  /// Whether the rig is followed; the first one that can be is, until the server restarts.
-  bool Follows(const std::string& rig, stream::DeviceRole role);
-  void Bind();
   /// The hand whose Wiimote has the stick, or may have it; unspecified where that is not known.
   stream::DeviceRole StickRole() const;
   /// The rig for an interface, by its devices; else what is missing.
   Result<std::string> RigFor(const mapping::InterfaceOptions& options) const;
-  bool TakeFeatures(const v1::FeatureFrame& frame);
-  bool TakeStick(const v1::Tick& tick, std::int64_t now_ns);
-  bool TakeBoards(const v1::Tick& tick, std::int64_t now_ns);
+  bool TakeFeatures(const rig::Tick& tick);
+  bool TakeStick(const rig::Tick& tick, std::int64_t now_ns);
+  bool TakeBoards(const rig::Tick& tick, std::int64_t now_ns);
   /// Drops inputs not heard of for too long; true when that is new.
   bool Expire(std::int64_t now_ns);
-  stream::DeviceRole RoleOf(std::uint32_t device) const;
 
-  const std::string wanted_rig_;
   mapping::InterfaceOptions options_;
-  std::string rig_;
-  std::uint64_t epoch_ = 0;
-  std::map<std::uint32_t, Bound> bound_;  ///< Devices of the rig.
-  v1::DeviceStatusList status_;
-  v1::SetupState setup_;
+  rig::Follower sensors_;
   mapping::Inputs inputs_;
   FeatureStamps stamps_;
   std::uint32_t stick_device_ = 0;
-  Age features_, stick_, left_board_, right_board_;
+  rig::LastHeard features_, stick_, left_board_, right_board_;
 };
 
 /// Turns sensor ticks and commands into engine inputs, on the io thread.

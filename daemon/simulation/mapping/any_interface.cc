@@ -148,28 +148,8 @@ const char* MappingFileOf(UserInterface interface) {
   return kWristMappingFile;
 }
 
-bool Uses(const InterfaceOptions& options, DeviceRole role) {
-  switch (options.interface) {
-    case UserInterface::kUnspecified:
-      return false;
-    case UserInterface::kWrist:
-    case UserInterface::kArm:
-    case UserInterface::kJoystick:
-      return role == DeviceRole::kLeftHand || role == DeviceRole::kRightHand;
-    case UserInterface::kLeg:
-      return role == DeviceRole::kLeftLeg || role == DeviceRole::kRightLeg;
-    case UserInterface::kBoards:
-      return role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
-  }
-  return false;
-}
-
 std::uint32_t MissingRoles(const InterfaceOptions& options, std::uint32_t present) {
-  std::uint32_t needed = 0;
-  for (unsigned number = 1; number <= static_cast<unsigned>(DeviceRole::kTrunk); ++number) {
-    const auto role = static_cast<DeviceRole>(number);
-    if (Uses(options, role)) needed |= stream::RoleBit(role);
-  }
+  std::uint32_t needed = stream::DrivingRoles(options.interface);
   const bool leg = options.interface == UserInterface::kLeg;
   if (leg && options.leg.turn_by == stream::TurnSource::kHead) {
     needed |= stream::RoleBit(DeviceRole::kHead);

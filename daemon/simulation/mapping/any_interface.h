@@ -75,9 +75,6 @@ struct InterfaceOptions {
 /// The file of an interface's table under daemon/simulation/data.
 const char* MappingFileOf(stream::UserInterface interface);
 
-/// Whether a controller or board with this role is part of the interface.
-bool Uses(const InterfaceOptions& options, stream::DeviceRole role);
-
 /// Bits (stream::RoleBit) of the roles that the interface needs and that are not among `present`.
 std::uint32_t MissingRoles(const InterfaceOptions& options, std::uint32_t present);
 

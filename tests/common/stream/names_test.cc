@@ -53,5 +53,12 @@ TEST(Names, AreListedForErrors) {
   EXPECT_EQ(RoleNames().substr(0, 22), "left_hand, right_hand,");
 }
 
+TEST(DrivingRoles, AreThoseOfTheLimbsThatMoveTheCharacter) {
+  EXPECT_EQ(RoleNames(DrivingRoles(UserInterface::kArm)), "left_hand, right_hand");
+  EXPECT_EQ(RoleNames(DrivingRoles(UserInterface::kLeg)), "left_leg, right_leg");
+  EXPECT_EQ(RoleNames(DrivingRoles(UserInterface::kBoards)), "left_board, right_board");
+  EXPECT_EQ(RoleNames(DrivingRoles(UserInterface::kUnspecified)), "");
+}
+
 }  // namespace
 }  // namespace footing::stream

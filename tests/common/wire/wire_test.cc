@@ -9,7 +9,9 @@
 #include <tuple>
 #include <vector>
 
+#include "common/rig/follower.h"
 #include "common/wire/scalar.h"
+#include "footing/v1/session.pb.h"
 
 namespace footing::wire {
 namespace {
@@ -261,6 +263,44 @@ TEST(Wire, TextFromADeviceIsMadeReadable) {
   v1::DeviceStatus parsed;
   ASSERT_TRUE(parsed.ParseFromString(ToProto(status).SerializeAsString()));
   EXPECT_EQ(parsed.name(), "Nintendo?");
+}
+
+TEST(SensorTick, LeavesOutSamplesThatAreNotFinite) {
+  v1::Tick tick;
+  for (const double number : {1.0, kNan, kInfinity}) {
+    tick.mutable_motion()->add_samples()->mutable_specific_force_mps2()->set_z(number);
+    tick.mutable_nunchuk()->add_samples()->set_stick_x(number);
+    tick.mutable_boards()->add_samples()->set_cop_x_m(number);
+    tick.mutable_contacts()->add_samples()->add_cells()->set_load_n(number);
+    v1::HandSample& seen = *tick.mutable_hands()->add_samples();
+    seen.set_confidence(1);
+    seen.mutable_sd_m()->set_y(number);
+  }
+  const rig::Tick read = SensorTick(tick);
+  EXPECT_EQ(read.motion.size(), 1u);
+  EXPECT_EQ(read.nunchuks.size(), 1u);
+  EXPECT_EQ(read.boards.size(), 1u);
+  EXPECT_EQ(read.contacts.size(), 1u);
+  EXPECT_EQ(read.hands.size(), 1u);
+  EXPECT_FALSE(read.devices || read.setup);
+}
+
+TEST(SensorTick, APointThatWasNotSeenNeedsNoPlace) {
+  v1::Tick tick;
+  tick.mutable_hands()->add_samples()->mutable_position_m()->set_x(kNan);
+  EXPECT_EQ(SensorTick(tick).hands.size(), 1u);
+}
+
+TEST(SensorTick, AnEmptyListOfDevicesIsNews) {
+  v1::Tick tick;
+  tick.set_epoch(7);
+  tick.set_snapshot(true);
+  tick.mutable_status();
+  const rig::Tick read = SensorTick(tick);
+  EXPECT_EQ(read.epoch, 7u);
+  EXPECT_TRUE(read.snapshot);
+  ASSERT_TRUE(read.devices);
+  EXPECT_TRUE(read.devices->empty());
 }
 
 }  // namespace

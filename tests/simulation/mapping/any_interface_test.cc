@@ -59,15 +59,6 @@ TEST(AnyInterface, SaysWhichRolesItLacks) {
   EXPECT_EQ(MissingRoles(leg, legs), 0u);
 }
 
-TEST(AnyInterface, UsesTheRolesOfItsLimbs) {
-  using stream::DeviceRole;
-  EXPECT_TRUE(Uses({.interface = UserInterface::kArm}, DeviceRole::kLeftHand));
-  EXPECT_TRUE(Uses({.interface = UserInterface::kLeg}, DeviceRole::kRightLeg));
-  EXPECT_TRUE(Uses({.interface = UserInterface::kBoards}, DeviceRole::kLeftBoard));
-  EXPECT_FALSE(Uses({.interface = UserInterface::kLeg}, DeviceRole::kLeftHand));
-  EXPECT_FALSE(Uses({.interface = UserInterface::kWrist}, DeviceRole::kEditor));
-}
-
 /// Braked before it leaps, the character's leap would be no longer than a stride.
 TEST(AnyInterface, AJumpOutOfARunKeepsTheRunUpUntilTheCharacterJumps) {
   auto stick = *AnyInterface::Create({.interface = UserInterface::kJoystick},
