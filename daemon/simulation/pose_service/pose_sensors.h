@@ -7,13 +7,12 @@
 #include <set>
 #include <string>
 
+#include "common/rig/follower.h"
 #include "common/runtime/exchange.h"
 #include "daemon/simulation/pose/arm_tracker.h"
 #include "daemon/simulation/pose/inertial_track.h"
 #include "daemon/simulation/pose_service/publish.h"
 #include "daemon/simulation/reconstruction/subject_model.h"
-#include "footing/v1/command.pb.h"
-#include "footing/v1/sensor.pb.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::pose_service {
@@ -36,7 +35,7 @@ class PoseArms {
   /// Whether the rig has a Wiimote there, and which device it is.
   void Bind(std::size_t side, std::optional<std::uint32_t> device,
             arms::Place place = arms::Place::kFist);
-  void Take(const v1::MotionSample& sample, std::int64_t now_ns);
+  void Take(const stream::MotionSample& sample, std::int64_t now_ns);
   /// Takes in the engine's report on its T-pose.
   void Follow(bool calibrated, double calibration_progress);
   /// Puts the arms and what is wrong with them into the inputs; times go forward.
@@ -45,12 +44,10 @@ class PoseArms {
  private:
   struct Device {
     std::optional<std::uint32_t> device;
-    bool seen = false, turns = false;  ///< A sample has come; one with an angular velocity.
-    std::int64_t seen_ns = 0, turned_ns = 0;
-    std::int64_t sampled_ns = 0;  ///< Time of the last one with an angular velocity.
-    bool simulated = false;
+    rig::LastHeard heard, turned;  ///< Any sample; one with an angular velocity.
+    std::int64_t sampled_ns = 0;   ///< Time of the last one with an angular velocity.
   };
-  void Take(const v1::MotionSample& sample, std::int64_t now_ns, std::size_t side,
+  void Take(const stream::MotionSample& sample, std::int64_t now_ns, std::size_t side,
             std::size_t place);
   HandTrouble TroubleOf(std::size_t side, std::size_t place, std::int64_t now_ns) const;
   /// Trouble of the devices that the arm has.
@@ -73,12 +70,12 @@ struct CountedPoint {
   Eigen::Vector3d p_W_m, sd_m, covariance_m2;
   Eigen::Matrix3d matrix_m2;  ///< The same covariance without that limit.
 
-  explicit CountedPoint(const v1::HandSample& sample);
+  explicit CountedPoint(const stream::HandSample& sample);
 };
 
 /// Whether the sample is of a point that was seen and whose place is in W: a tracker without
 /// calibration reports places in its own frame.
-bool IsSeenInWorld(const v1::HandSample& sample);
+bool IsSeenInWorld(const stream::HandSample& sample);
 
 /// One hand as several trackers see it: a HandTrack for each of them, fused by their covariances.
 /// Where they contradict each other the fused covariance grows with the contradiction (Birge's
@@ -92,10 +89,10 @@ class TrackedHand {
   /// The PS Move in this hand, if there is one. Another one starts again.
   void Bind(std::optional<std::uint32_t> move);
   /// Nothing but for samples of that Move that have units.
-  void Feel(const v1::MotionSample& sample);
+  void Feel(const stream::MotionSample& sample);
 
   /// A sample by IsSeenInWorld, exposed then.
-  void Add(const v1::HandSample& sample, double exposed_s, std::int64_t now_ns);
+  void Add(const stream::HandSample& sample, double exposed_s, std::int64_t now_ns);
 
   struct Fused {
     reconstruction::HandInput hand;  ///< Invalid where no tracker has it.
@@ -109,8 +106,7 @@ class TrackedHand {
  private:
   struct Source {
     std::string tracker;
-    bool used = false, simulated = false;
-    std::int64_t seen_ns = 0;
+    rig::LastHeard heard;
     reconstruction::HandTrack track;
   };
   Source& SourceOf(const std::string& tracker);
@@ -144,7 +140,7 @@ class PoseSensors {
               std::optional<arms::ArmModel> arm = std::nullopt);
 
   /// Takes in a tick and hands the inputs over.
-  void OnTick(const v1::Tick& tick, std::int64_t now_ns);
+  void OnTick(const v1::Tick& message, std::int64_t now_ns);
   /// Takes in the engine's report on its T-pose, frame by frame: Wiimotes are aligned by it.
   void Follow(const PoseFrame& frame) {
     arms_.Follow(frame.t_pose.complete, frame.t_pose.progress);
@@ -154,7 +150,7 @@ class PoseSensors {
   /// Number of the subject that the next inputs are for.
   void TakeSubject(std::uint64_t number);
 
-  const std::string& rig() const { return followed_rig_; }
+  const std::string& rig() const { return follower_.rig(); }
   const PoseInputs& inputs() const { return inputs_; }
   /// Names of who tracked the hands last, "camera, kinect"; empty: nobody has.
   const std::string& tracker() const { return tracker_; }
@@ -163,51 +159,34 @@ class PoseSensors {
 
  private:
   struct Board {
-    bool bound = false;  ///< A device has the role.
-    bool attached = false;
-    std::uint32_t device = 0;
-    bool seen = false;
-    std::int64_t seen_ns = 0;
-    bool simulated = false;
+    std::optional<std::uint32_t> device;  ///< The device that has the role.
+    rig::LastHeard heard;
     board::ImpulseMeter meter;
   };
-  /// A joint or an insole.
-  struct BodySource {
-    bool seen = false;
-    std::int64_t seen_ns = 0;
-    bool simulated = false;
-  };
 
-  void Bind(const v1::DeviceStatusList& status);
-  void BindArms(const v1::DeviceStatusList& status);
-  void BindMoves(const v1::DeviceStatusList& status);
-  /// Puts the cells where the followed rig's boards have them.
-  void Place(const v1::SetupState& setup);
-  void CheckLayout();
-  void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
+  /// Looks up which devices have the roles, and where the boards lie.
+  void Bind();
+  void TakeBoard(const stream::BoardSample& sample, std::int64_t now_ns);
   /// `age_s` of its exposure.
-  void TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
-  void TakeJoint(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
+  void TakeHand(const stream::HandSample& sample, double age_s, std::int64_t now_ns);
+  void TakeJoint(const stream::HandSample& sample, double age_s, std::int64_t now_ns);
   /// Whether the joints of this tracker are followed: another one's are once it is silent.
   bool FollowsJointsOf(const std::string& tracker, std::int64_t now_ns);
-  void TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns);
+  void TakeInsole(const stream::ContactSample& sample, std::int64_t now_ns);
   void DropOld(std::int64_t now_ns);
   void ReportHands(std::int64_t now_ns, std::int64_t host_ns);
 
-  const std::string wanted_rig_;
-  std::string followed_rig_;
+  rig::Follower follower_;
   exchange::Latest<PoseInputs>& out_;
   std::array<Board, momentum::kFeet> boards_{};
   std::array<TrackedHand, reconstruction::kHands> hands_{};
-  std::array<BodySource, momentum::kFeet> insoles_{};
-  std::array<BodySource, stream::kBodyJoints> joints_{};
+  std::array<rig::LastHeard, momentum::kFeet> insoles_{};
+  std::array<rig::LastHeard, stream::kBodyJoints> joints_{};
   std::array<reconstruction::HandTrack, stream::kBodyJoints> joint_tracks_ =
       reconstruction::JointTracks();
   std::string tracker_;
   std::string joint_tracker_;  ///< Tracker whose joints are followed.
   std::int64_t joint_tracker_ns_ = 0;
-  v1::SetupState setup_;  ///< As published last.
-  stream::BoardLayout layout_;
   std::string board_problem_;
   PoseArms arms_;
   PoseInputs inputs_;

@@ -43,15 +43,15 @@ struct PoseArmsTest : testing::Test {
 
   /// A sample of a Wiimote: S is x left, y front, z down; ahead is its y.
   void Take(std::uint32_t device, double turn_radps) {
-    v1::MotionSample sample;
-    sample.set_device(device);
-    sample.set_sampled_ns(now_ns);
-    *sample.mutable_specific_force_mps2() = wire::ToProto(Eigen::Vector3d(
-        kStandardGravityMps2 * std::sin(roll_rad), 0, -kStandardGravityMps2 * std::cos(roll_rad)));
+    stream::MotionSample sample;
+    sample.device = device;
+    sample.sampled_ns = now_ns;
+    sample.specific_force_mps2 = {kStandardGravityMps2 * std::sin(roll_rad), 0,
+                                  -kStandardGravityMps2 * std::cos(roll_rad)};
     // A part of its readings has been taken by footingd for its bias.
-    *sample.mutable_angular_velocity_radps() =
-        wire::ToProto(Eigen::Vector3d(kBiasRadps, turn_radps - held_bias_radps, 0));
-    *sample.mutable_gyroscope_bias_radps() = wire::ToProto(Eigen::Vector3d(0, held_bias_radps, 0));
+    sample.has_angular_velocity = true;
+    sample.angular_velocity_radps = {kBiasRadps, turn_radps - held_bias_radps, 0};
+    sample.gyroscope_bias_radps = {0, held_bias_radps, 0};
     arms.Take(sample, now_ns);
   }
   void Run(double seconds, double turn_radps, bool left_too = true) {
@@ -147,9 +147,9 @@ TEST_F(PoseArmsTest, AWiimoteWithoutMotionPlusAndOneWithoutAModelAreNamed) {
   without_model.Report(now_ns, inputs);
   EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kNoModel);
   EXPECT_EQ(inputs.hand_trouble[1], HandTrouble::kNone) << "none is there";
-  v1::MotionSample sample;
-  sample.set_device(kLeft);
-  sample.set_sampled_ns(now_ns);
+  stream::MotionSample sample;
+  sample.device = kLeft;
+  sample.sampled_ns = now_ns;
   arms.Take(sample, now_ns);
   arms.Report(now_ns, inputs);
   EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kNoGyroscope);
@@ -162,16 +162,16 @@ struct StrappedArmTest : testing::Test {
   static constexpr std::uint32_t kUpper = 11, kForearm = 12;
 
   void Take(std::uint32_t device, double up_radps) {
-    v1::MotionSample sample;
-    sample.set_device(device);
-    sample.set_sampled_ns(now_ns);
-    sample.set_simulated(true);
+    stream::MotionSample sample;
+    sample.device = device;
+    sample.sampled_ns = now_ns;
+    sample.simulated = true;
     // S is x left, y front, z down: front to the left, up by `pitch_rad`.
-    *sample.mutable_specific_force_mps2() =
-        wire::ToProto(Eigen::Vector3d(0, kStandardGravityMps2 * std::sin(pitch_rad),
-                                      -kStandardGravityMps2 * std::cos(pitch_rad)));
+    sample.specific_force_mps2 = {0, kStandardGravityMps2 * std::sin(pitch_rad),
+                                  -kStandardGravityMps2 * std::cos(pitch_rad)};
     // Ahead is to the right of its front: the negative x.
-    *sample.mutable_angular_velocity_radps() = wire::ToProto(Eigen::Vector3d(-up_radps, 0, 0));
+    sample.has_angular_velocity = true;
+    sample.angular_velocity_radps = {-up_radps, 0, 0};
     arms.Take(sample, now_ns);
   }
   void Run(double seconds, double up_radps, bool forearm_too = true) {
@@ -295,6 +295,25 @@ TEST_F(PoseSensorsTest, TwoBoardsInTheLayoutOfOneAreNotFollowed) {
   }
   After(tick);
   EXPECT_EQ(sensors.board_problem(), "");
+}
+
+/// A board that was lost keeps its role in the list beside the one that has it now.
+TEST_F(PoseSensorsTest, ALostBoardDoesNotTakeTheRoleOfTheAttachedOne) {
+  v1::Tick tick = StatusTick();
+  AddDevice(tick, 12, v1::DEVICE_ROLE_LEFT_BOARD);
+  tick.mutable_status()->mutable_devices()->rbegin()->set_state(v1::DEVICE_STATE_LOST);
+  After(tick);
+  EXPECT_TRUE(After(Boards({1, 2, 3, 4}, {5, 6, 7, 8})).sensors.loads.feet[0].valid);
+}
+
+TEST_F(PoseSensorsTest, ARestartedServerMayHaveAnotherRig) {
+  After(StatusTick());
+  v1::Tick later;
+  later.set_epoch(2);
+  AddDevice(later, kLeftDevice, v1::DEVICE_ROLE_LEFT_BOARD, "other");
+  AddBoard(later, kLeftDevice, {1, 2, 3, 4});
+  EXPECT_TRUE(After(later).sensors.loads.feet[0].valid);
+  EXPECT_EQ(sensors.rig(), "other");
 }
 
 /// A rig's set-up with boards where nobody laid them out, whose sensors are this far apart.
@@ -582,17 +601,13 @@ TEST_F(PoseSensorsTest, EveryCalibrationHasItsOwnNumber) {
   EXPECT_EQ(inputs.Front().subject_number, 4u);
 }
 
-v1::HandSample Sample(const std::string& tracker, const Eigen::Vector3d& p_W_m,
-                      const Eigen::Vector3d& sd_m) {
-  v1::HandSample sample;
-  sample.set_tracker(tracker);
-  sample.set_confidence(1);
-  sample.mutable_position_m()->set_x(p_W_m.x());
-  sample.mutable_position_m()->set_y(p_W_m.y());
-  sample.mutable_position_m()->set_z(p_W_m.z());
-  sample.mutable_sd_m()->set_x(sd_m.x());
-  sample.mutable_sd_m()->set_y(sd_m.y());
-  sample.mutable_sd_m()->set_z(sd_m.z());
+stream::HandSample Sample(const std::string& tracker, const Eigen::Vector3d& p_W_m,
+                          const Eigen::Vector3d& sd_m) {
+  stream::HandSample sample;
+  sample.tracker = tracker;
+  sample.confidence = 1;
+  sample.position_m = p_W_m;
+  sample.sd_m = sd_m;
   return sample;
 }
 
@@ -630,18 +645,17 @@ void Swing(double seen_until_s, double to_s, bool simulated, TrackedHand& hand) 
   const double ahead_m = simulated ? 0 : 0.1125;
   for (double t_s = 10; t_s < to_s; t_s += 0.005) {
     const double swing = t_s < 12 ? 0 : kReachM * std::sin(kRadps * (t_s - 12));
-    v1::MotionSample sample;
-    sample.set_device(4);
-    sample.set_simulated(simulated);
-    sample.set_sampled_ns(SecondsToNanoseconds(t_s));
-    sample.mutable_specific_force_mps2()->set_x(-kRadps * kRadps * swing);
-    sample.mutable_specific_force_mps2()->set_z(-9.80665);
-    sample.mutable_angular_velocity_radps();
+    stream::MotionSample sample;
+    sample.device = 4;
+    sample.simulated = simulated;
+    sample.sampled_ns = SecondsToNanoseconds(t_s);
+    sample.specific_force_mps2 = {-kRadps * kRadps * swing, 0, -9.80665};
+    sample.has_angular_velocity = true;
     hand.Feel(sample);
     if (t_s > seen_until_s) continue;
-    v1::HandSample seen =
+    stream::HandSample seen =
         Sample("camera", kHere + Eigen::Vector3d(ahead_m, swing, 0), {0.005, 0.002, 0.002});
-    seen.set_sampled_ns(SecondsToNanoseconds(t_s));
+    seen.sampled_ns = SecondsToNanoseconds(t_s);
     hand.Add(seen, t_s, SecondsToNanoseconds(t_s));
   }
 }
@@ -695,18 +709,18 @@ TEST(TrackedHand, AnotherTrackerTooManyReplacesTheOneHeardLongestAgo) {
 }
 
 TEST(CountedPoint, ItsInformationIsTheTrackersTimesItsConfidence) {
-  v1::HandSample sample = Sample("camera", kHere, {0.01, 0.02, 0.03});
-  sample.mutable_covariance_m2()->set_x(0.0001);
-  sample.set_confidence(0.25);
+  stream::HandSample sample = Sample("camera", kHere, {0.01, 0.02, 0.03});
+  sample.covariance_m2.x() = 0.0001;
+  sample.confidence = 0.25;
   const CountedPoint point(sample);
   EXPECT_LT((point.sd_m - Eigen::Vector3d(0.02, 0.04, 0.06)).norm(), 1e-12);
   EXPECT_NEAR(point.covariance_m2.x(), 0.0004, 1e-15);
 }
 
 TEST(CountedPoint, IsNeverBetterThanTwoMillimetresNorWorseThanAMetre) {
-  v1::HandSample sample = Sample("camera", kHere, {1e-6, 0.5, 0.5});
+  stream::HandSample sample = Sample("camera", kHere, {1e-6, 0.5, 0.5});
   EXPECT_EQ(CountedPoint(sample).sd_m.x(), 0.002);
-  sample.set_confidence(1e-9);
+  sample.confidence = 1e-9;
   const CountedPoint point(sample);
   EXPECT_TRUE(point.sd_m.allFinite());
   EXPECT_LE(point.sd_m.maxCoeff(), 1);
@@ -747,15 +761,11 @@ struct Sphere {
   void Add(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& p_W_m,
            const Eigen::Vector3d& truth_m, const Eigen::Vector3d& camera_m,
            const sphere::Estimate& seen) {
-    v1::HandSample sample = Sample("camera", p_W_m, covariance.diagonal().cwiseSqrt());
-    sample.mutable_covariance_m2()->set_x(covariance(0, 1));
-    sample.mutable_covariance_m2()->set_y(covariance(0, 2));
-    sample.mutable_covariance_m2()->set_z(covariance(1, 2));
-    sample.set_confidence(seen.confidence);
-    sample.set_saturated(seen.is_saturated);
-    sample.mutable_tracker_pose()->set_x_m(camera_m.x());
-    sample.mutable_tracker_pose()->set_z_m(camera_m.z());
-    sample.mutable_tracker_pose()->set_qw(1);
+    stream::HandSample sample = Sample("camera", p_W_m, covariance.diagonal().cwiseSqrt());
+    sample.covariance_m2 = {covariance(0, 1), covariance(0, 2), covariance(1, 2)};
+    sample.confidence = seen.confidence;
+    sample.saturated = seen.is_saturated;
+    sample.tracker_pose.emplace().position_m = {camera_m.x(), 0, camera_m.z()};
     // Along the line of sight: across it no point counts as better than 2 mm.
     const Eigen::Vector3d sight = (truth_m - camera_m).normalized();
     const double error2_m2 = std::pow(sight.dot(p_W_m - truth_m), 2);
