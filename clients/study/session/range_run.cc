@@ -1,6 +1,5 @@
 #include "clients/study/session/range_run.h"
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -8,7 +7,6 @@
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/board/geometry.h"
-#include "common/board/layout.h"
 #include "common/net/address.h"
 #include "common/net/client.h"
 #include "common/recording/recorded_session.h"
@@ -24,14 +22,6 @@ using stream::DeviceRole;
 /// A board that has been silent for longer is missing, as for the interface.
 constexpr double kBoardTimeoutS = 0.25;
 
-bool Uses(const std::string& interface, DeviceRole role) {
-  const bool board = role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
-  if (interface == "boards") return board;
-  const bool leg = role == DeviceRole::kLeftLeg || role == DeviceRole::kRightLeg;
-  const bool hand = role == DeviceRole::kLeftHand || role == DeviceRole::kRightHand;
-  return interface == "leg" ? leg : hand;
-}
-
 }  // namespace
 
 std::vector<std::string> RangeChannels() {
@@ -39,83 +29,47 @@ std::vector<std::string> RangeChannels() {
 }
 
 RangeFeed::RangeFeed(const ranges::Played& played, std::string rig)
-    : played_(played), rig_(std::move(rig)), meter_(played) {}
+    : played_(played),
+      sensors_(std::move(rig), stream::DrivingRoles(stream::UserInterfaceNamed(played.interface))),
+      meter_(played) {}
 
-bool RangeFeed::Follows(const std::string& rig, DeviceRole role) {
-  if (rig_.empty() && Uses(played_.interface, role)) rig_ = rig;
-  return !rig_.empty() && rig == rig_;
-}
-
-void RangeFeed::TakeStatus(const v1::DeviceStatusList& status) {
-  devices_.clear();
-  for (const v1::DeviceStatus& message : status.devices()) {
-    const stream::DeviceStatus device = wire::FromProto(message);
-    devices_[device.device] = {device.rig, device.role, device.mounted};
-  }
-}
-
-void RangeFeed::TakeStick(double time_s, const v1::NunchukSamples& samples) {
-  for (const v1::NunchukSample& sample : samples.samples()) {
-    const auto device = devices_.find(sample.device());
-    if (device == devices_.end() || !Uses(played_.interface, device->second.role)) continue;
-    if (!Follows(device->second.rig, device->second.role)) continue;
-    if (!std::isfinite(sample.stick_x()) || !std::isfinite(sample.stick_y())) continue;
-    meter_.AddStick(time_s, sample.stick_x(), sample.stick_y(), sample.simulated());
-  }
-}
-
-void RangeFeed::TakeBoards(double time_s, const v1::BoardSamples& samples) {
+void RangeFeed::TakeBoards(const rig::Tick& tick) {
   bool taken = false;
-  for (const v1::BoardSample& message : samples.samples()) {
-    const auto device = devices_.find(message.device());
-    if (device == devices_.end() || !Uses(played_.interface, device->second.role)) continue;
-    if (!Follows(device->second.rig, device->second.role)) continue;
-    if (!std::isfinite(message.total_n()) || !std::isfinite(message.cop_x_m()) ||
-        !std::isfinite(message.cop_y_m())) {
-      continue;
-    }
-    stream::BoardLayout layout;
-    for (const v1::RigSetup& rig : setup_.rigs()) {
-      if (rig.rig() == rig_) layout = wire::FromProto(rig).layout;
-    }
-    layout = board::LayoutOr(layout);
-    const bool left = device->second.role == DeviceRole::kLeftBoard;
+  for (const stream::BoardSample& sample : tick.boards) {
+    const DeviceRole role = sensors_.RoleOf(sample.device);
+    if (role == DeviceRole::kUnspecified) continue;
+    const stream::BoardLayout layout = sensors_.Layout();
+    const bool left = role == DeviceRole::kLeftBoard;
     const double forward_m =
-        board::InWorld(left ? layout.left : layout.right, message.cop_x_m(), message.cop_y_m()).x();
-    const double load_n = message.top_left_n() + message.top_right_n() + message.bottom_left_n() +
-                          message.bottom_right_n();
-    (left ? left_ : right_) = {
-        {load_n, message.cop_valid(), forward_m}, time_s, message.simulated()};
+        board::InWorld(left ? layout.left : layout.right, sample.cop_x_m, sample.cop_y_m).x();
+    const double load_n =
+        sample.top_left_n + sample.top_right_n + sample.bottom_left_n + sample.bottom_right_n;
+    (left ? left_ : right_) = {{load_n, sample.cop_valid, forward_m},
+                               {true, tick.host_ns, sample.simulated}};
     taken = true;
   }
-  const auto sends = [time_s](const Foot& foot) {
-    return foot.seen_s >= 0 && time_s - foot.seen_s <= kBoardTimeoutS;
-  };
-  if (!taken || !sends(left_) || !sends(right_)) return;
-  meter_.AddStance(time_s, board::StanceOn(left_.load, right_.load),
-                   left_.simulated || right_.simulated);
+  if (!taken || !left_.heard.IsLive(tick.host_ns, kBoardTimeoutS) ||
+      !right_.heard.IsLive(tick.host_ns, kBoardTimeoutS)) {
+    return;
+  }
+  meter_.AddStance(NanosecondsToSeconds(tick.host_ns), board::StanceOn(left_.load, right_.load),
+                   left_.heard.simulated || right_.heard.simulated);
 }
 
-void RangeFeed::Take(const v1::Tick& tick) {
-  if (tick.has_status()) TakeStatus(tick.status());
-  if (tick.has_setup()) setup_ = tick.setup();
-  if (tick.snapshot()) return;
-  const double time_s = NanosecondsToSeconds(tick.host_ns());
-  if (played_.interface == "joystick") return TakeStick(time_s, tick.nunchuk());
-  if (played_.interface == "boards") return TakeBoards(time_s, tick.boards());
-  for (const v1::RigFeatures& message : tick.features().rigs()) {
-    const stream::RigFeatures rig = wire::FromProto(message);
-    bool follows = false;
-    for (const stream::DeviceFeatures& device : rig.devices) {
-      follows |= Follows(rig.rig, device.role);
+void RangeFeed::Take(const rig::Tick& tick) {
+  sensors_.Take(tick);
+  if (tick.snapshot) return;
+  const double time_s = NanosecondsToSeconds(tick.host_ns);
+  if (played_.interface == "boards") return TakeBoards(tick);
+  if (played_.interface == "joystick") {
+    for (const stream::NunchukSample& sample : tick.nunchuks) {
+      if (sensors_.RoleOf(sample.device) == DeviceRole::kUnspecified) continue;
+      meter_.AddStick(time_s, sample.stick_x, sample.stick_y, sample.simulated);
     }
-    if (!follows) continue;
-    std::uint32_t mounted_roles = 0;
-    for (const auto& [number, device] : devices_) {
-      if (device.rig == rig_ && device.mounted) mounted_roles |= stream::RoleBit(device.role);
-    }
-    meter_.Add(time_s, rig, mounted_roles);
+    return;
   }
+  const stream::RigFeatures* features = sensors_.FeaturesIn(tick);
+  if (features != nullptr) meter_.Add(time_s, *features, sensors_.MountedRoles());
 }
 
 Result<RecordedRanges> RangesInRecording(const std::string& path, const ranges::Played& played,
@@ -129,18 +83,19 @@ Result<RecordedRanges> RangesInRecording(const std::string& path, const ranges::
   RangeFeed feed(played, rig);
   const std::int64_t start_ns = sensors->ticks.front().host_ns;
   for (const recording::RecordedTick& recorded : sensors->ticks) {
-    auto tick =
+    const auto message =
         recording::ReadTick(recorded, {v1::Tick::kStatusFieldNumber, v1::Tick::kFeaturesFieldNumber,
                                        v1::Tick::kNunchukFieldNumber, v1::Tick::kBoardsFieldNumber,
                                        v1::Tick::kSetupFieldNumber});
-    if (!tick) return InvalidData(path + ": " + tick.error().message);
+    if (!message) return InvalidData(path + ": " + message.error().message);
+    rig::Tick tick = wire::SensorTick(*message);
     const double time_s = NanosecondsToSeconds(recorded.host_ns - start_ns);
     if (time_s < from_s || (to_s > 0 && time_s > to_s)) {
-      tick->clear_features();
-      tick->clear_nunchuk();
-      tick->clear_boards();
+      tick.features.clear();
+      tick.nunchuks.clear();
+      tick.boards.clear();
     }
-    feed.Take(*tick);
+    feed.Take(tick);
   }
   auto measured = feed.meter().Measure();
   if (!measured) return Error{measured.error().kind, path + ": " + measured.error().message};
@@ -170,7 +125,7 @@ class SensorLink {
   bool live() const { return state_ == transport::LinkState::kLive; }
   const std::string& why() const { return why_; }
   /// The newest device status and setup, which a new feed begins with.
-  const v1::Tick& known() const { return known_; }
+  const rig::Tick& known() const { return known_; }
 
  private:
   static transport::ClientOptions OptionsOf(const transport::Address& address) {
@@ -186,10 +141,12 @@ class SensorLink {
 
   static transport::ClientHandlers HandlersOf(SensorLink& link) {
     transport::ClientHandlers handlers;
-    handlers.on_tick = [&link](const v1::Tick& tick) {
+    handlers.on_tick = [&link](const v1::Tick& message) {
+      const rig::Tick tick = wire::SensorTick(message);
       link.ticked_ = true;
-      if (tick.has_status()) *link.known_.mutable_status() = tick.status();
-      if (tick.has_setup()) *link.known_.mutable_setup() = tick.setup();
+      link.known_.epoch = tick.epoch;
+      if (tick.devices) link.known_.devices = tick.devices;
+      if (tick.setup) link.known_.setup = tick.setup;
       if (link.feed_ != nullptr) link.feed_->Take(tick);
     };
     handlers.on_state = [&link](transport::LinkState state, const std::string& why) {
@@ -201,7 +158,7 @@ class SensorLink {
 
   RangeFeed* feed_ = nullptr;
   bool ticked_ = false;
-  v1::Tick known_;
+  rig::Tick known_;
   transport::LinkState state_ = transport::LinkState::kConnecting;
   std::string why_ = "not connected";
   transport::Client client_;

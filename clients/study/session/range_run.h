@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -9,7 +8,7 @@
 #include "clients/study/session/console.h"
 #include "common/base/result.h"
 #include "common/net/address.h"
-#include "footing/v1/session.pb.h"
+#include "common/rig/follower.h"
 
 namespace footing::study {
 
@@ -22,32 +21,20 @@ class RangeFeed {
   /// `rig` empty: the first one with a device of the interface.
   RangeFeed(const ranges::Played& played, std::string rig);
 
-  void Take(const v1::Tick& tick);
+  void Take(const rig::Tick& tick);
   const ranges::Meter& meter() const { return meter_; }
-  const std::string& rig() const { return rig_; }
+  const std::string& rig() const { return sensors_.rig(); }
 
  private:
-  struct Device {
-    std::string rig;
-    stream::DeviceRole role = stream::DeviceRole::kUnspecified;
-    bool mounted = false;
-  };
-
-  bool Follows(const std::string& rig, stream::DeviceRole role);
-  void TakeStatus(const v1::DeviceStatusList& status);
-  void TakeStick(double time_s, const v1::NunchukSamples& samples);
-  void TakeBoards(double time_s, const v1::BoardSamples& samples);
+  void TakeBoards(const rig::Tick& tick);
 
   ranges::Played played_;
-  std::string rig_;
+  rig::Follower sensors_;
   struct Foot {
     board::FootLoad load;
-    double seen_s = -1;  ///< When its board last sent; negative: not yet.
-    bool simulated = false;
+    rig::LastHeard heard;  ///< On footingd's clock.
   };
 
-  std::map<std::uint32_t, Device> devices_;
-  v1::SetupState setup_;
   Foot left_, right_;
   ranges::Meter meter_;
 };

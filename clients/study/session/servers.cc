@@ -7,6 +7,7 @@
 #include "clients/study/session/server_link.h"
 #include "common/base/units.h"
 #include "common/net/address.h"
+#include "common/rig/follower.h"
 #include "common/stream/leg_turn.h"
 #include "common/wire/wire.h"
 
@@ -48,6 +49,7 @@ class Servers::Implementation {
         active_(active),
         sensor_(console, {"footingd", options.sensor, {"status", "features"}, options.holder},
                 {[this](const v1::Tick& tick) {
+                   sensors_.Take(wire::SensorTick(tick));
                    OnTick(tick);
                    sensor_ticked_ = true;
                  },
@@ -74,12 +76,6 @@ class Servers::Implementation {
   }
 
   void OnTick(const v1::Tick& tick) {
-    if (tick.has_status()) {
-      devices_.clear();
-      for (const v1::DeviceStatus& one : tick.status().devices()) {
-        devices_.push_back(wire::FromProto(one));
-      }
-    }
     if (tick.has_features()) active_.Add(tick.host_ns(), AnyMoves(tick.features()));
     if (tick.has_track()) track_ = wire::FromProto(tick.track());
     // The snapshot repeats what was before this program came.
@@ -100,7 +96,7 @@ class Servers::Implementation {
   ActiveTime& active_;
   bool sensor_ticked_ = false;
   bool simulation_ticked_ = false;
-  std::vector<stream::DeviceStatus> devices_;
+  rig::Follower sensors_;
   SimulationFrame frame_;
   std::string in_force_;  ///< Interface that this connection set last; empty: none.
   stream::Track track_;
@@ -141,7 +137,7 @@ Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const Options& 
 }
 
 const std::vector<stream::DeviceStatus>& Servers::devices() const {
-  return implementation_->devices_;
+  return implementation_->sensors_.devices();
 }
 const SimulationFrame& Servers::frame() const { return implementation_->frame_; }
 const stream::Track& Servers::track() const { return implementation_->track_; }
