@@ -11,6 +11,7 @@
 
 #include "common/base/result.h"
 #include "common/recording/recorded_session.h"
+#include "common/rig/follower.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/session.pb.h"
 
@@ -116,30 +117,25 @@ class DeviceTables {
   /// From now on all data are of this start of a server, which gives devices its own numbers.
   /// Samples of before the run are left out.
   void Start(const RunClock& clock);
-  void Add(const v1::Tick& tick);
+  void Add(const rig::Tick& tick);
 
   const std::map<std::string, MotionTable>& tables() const { return tables_; }
 
  private:
-  struct Device {
-    std::string point;
-    std::string kind;
-  };
-
   /// Null: a device that is left out, or a sample of before the run. Sets `point_` and `time_s_`:
   /// of the sample, or of its tick where it does not say.
   MotionTable* Find(std::uint32_t device, std::int64_t sampled_ns, const std::string& part);
-  MotionTable* Find(const Device& device, std::int64_t sampled_ns, const std::string& part);
-  void AddStatus(const v1::DeviceStatus& one);
-  void AddMotion(const v1::MotionSample& one);
-  void AddBoard(const v1::BoardSample& one);
-  void AddStick(const v1::NunchukSample& one);
-  void AddHand(const v1::HandSample& one);
+  MotionTable* Find(const std::string& point, const std::string& maker, std::int64_t sampled_ns,
+                    const std::string& part);
+  void AddMotion(const stream::MotionSample& one);
+  void AddBoard(const stream::BoardSample& one);
+  void AddStick(const stream::NunchukSample& one);
+  void AddHand(const stream::HandSample& one);
 
   bool with_role_;
   RunClock clock_;
   std::map<std::string, MotionTable> tables_;
-  std::map<std::uint32_t, Device> devices_;
+  rig::Follower sensors_;
   std::int64_t tick_ns_ = 0;
   double time_s_ = 0;
   std::string point_;

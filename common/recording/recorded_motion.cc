@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/recording/bids_tables.h"
+#include "common/wire/wire.h"
 
 namespace footing::bids {
 namespace {
@@ -100,7 +101,7 @@ class Reader {
     const auto clock = RunClock::Of(server, *zero_wall_ns_);
     if (!clock) return clock.error();
     devices_.Start(*clock);
-    for (const Tick& tick : *ticks) devices_.Add(tick);
+    for (const Tick& tick : *ticks) devices_.Add(wire::SensorTick(tick));
     return {};
   }
 
