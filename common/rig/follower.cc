@@ -9,6 +9,7 @@
 namespace footing::rig {
 
 using stream::DeviceRole;
+using stream::DeviceState;
 using stream::DeviceStatus;
 
 bool LastHeard::IsLive(std::int64_t now_ns, double timeout_s) const {
@@ -25,7 +26,9 @@ Changes Follower::Take(const Tick& tick) {
   }
   if (changes.devices) devices_ = *tick.devices;
   if (changes.setup) setup_ = *tick.setup;
-  for (const DeviceStatus& device : devices_) Follows(device.rig, device.role);
+  for (const DeviceStatus& device : devices_) {
+    if (device.state != DeviceState::kLost) Follows(device.rig, device.role);
+  }
   return changes;
 }
 
@@ -36,9 +39,12 @@ bool Follower::Follows(const std::string& rig, DeviceRole role) {
 
 const stream::RigFeatures* Follower::FeaturesIn(const Tick& tick) {
   for (const stream::RigFeatures& rig : tick.features) {
-    bool follows = false;
-    for (const auto& device : rig.devices) follows |= Follows(rig.rig, device.role);
-    if (follows) return &rig;
+    for (const stream::DeviceFeatures& device : rig.devices) {
+      // Features go on for a lost device, until another one has its role.
+      const DeviceStatus* status = Find(device.device);
+      if (status == nullptr || status->state != DeviceState::kLost) Follows(rig.rig, device.role);
+    }
+    if (!rig_.empty() && rig.rig == rig_) return &rig;
   }
   return nullptr;
 }
@@ -66,7 +72,7 @@ const DeviceStatus* Follower::With(DeviceRole role) const {
   const DeviceStatus* found = nullptr;
   for (const DeviceStatus& device : devices_) {
     if (!IsOwn(device) || device.role != role) continue;
-    if (found == nullptr || found->state == stream::DeviceState::kLost) found = &device;
+    if (found == nullptr || found->state == DeviceState::kLost) found = &device;
   }
   return found;
 }

@@ -55,8 +55,8 @@ struct Changes {
 /// plain value.
 class Follower {
  public:
-  /// `rig` empty: the first rig with a device in one of `roles` (bits by stream::RoleBit), until
-  /// the server restarts.
+  /// `rig` empty: the first rig with an attached device in one of `roles` (bits by
+  /// stream::RoleBit), until the server restarts.
   explicit Follower(std::string rig = "", std::uint32_t roles = 0)
       : wanted_rig_(std::move(rig)), roles_(roles), rig_(wanted_rig_) {}
 

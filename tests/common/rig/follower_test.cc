@@ -66,6 +66,29 @@ TEST(Follower, ASampleMaySpeakForItsRigBeforeTheListOfDevicesDoes) {
   EXPECT_FALSE(follower.Follows("other", DeviceRole::kLeftHand));
 }
 
+TEST(Follower, ALostDeviceDoesNotSpeakForItsRig) {
+  Follower follower("", kHands);
+  Tick tick = TickWith({DeviceOf(1, "old", DeviceRole::kLeftHand, DeviceState::kLost)});
+  stream::DeviceFeatures features;
+  features.device = 1;
+  features.role = DeviceRole::kLeftHand;
+  tick.features.emplace_back().rig = "old";
+  tick.features[0].devices = {features};
+  follower.Take(tick);
+  EXPECT_EQ(follower.FeaturesIn(tick), nullptr);
+  EXPECT_EQ(follower.rig(), "");
+  tick.devices->push_back(DeviceOf(2, "main", DeviceRole::kLeftHand));
+  features.device = 2;
+  tick.features.emplace_back().rig = "main";
+  tick.features[1].devices = {features};
+  follower.Take(tick);
+  EXPECT_EQ(follower.FeaturesIn(tick), &tick.features[1]);
+  tick.devices->back().state = DeviceState::kLost;
+  follower.Take(tick);
+  EXPECT_EQ(follower.rig(), "main") << "it stays with the rig that it has";
+  EXPECT_EQ(follower.FeaturesIn(tick), &tick.features[1]);
+}
+
 TEST(Follower, ARestartedServerHasOtherDevicesAndMayHaveAnotherRig) {
   Follower follower("", kHands);
   Tick tick = TickWith({DeviceOf(1, "main", DeviceRole::kLeftHand)});
