@@ -18,6 +18,7 @@
 #include "common/recording/mcap_records.h"
 #include "common/recording/recorded_session.h"
 #include "common/recording/stream_recorder.h"
+#include "common/rig/follower.h"
 #include "common/runtime/clock.h"
 #include "common/stream/roles.h"
 #include "common/wire/wire.h"
@@ -121,7 +122,7 @@ class Run {
     } else if (next_) {
       acceptance_.Begin(*std::exchange(next_, std::nullopt), tick.host_ns());
     }
-    TakeTick(tick, acceptance_);
+    acceptance_.Take(wire::SensorTick(tick));
   }
 
   void Keep(Result<void> written) {
@@ -301,7 +302,7 @@ Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path) {
         tick.host_ns() >= plan->spans.back().to_ns) {
       acceptance.End(plan->spans.back().to_ns);
     }
-    TakeTick(tick, acceptance);
+    acceptance.Take(wire::SensorTick(tick));
   }
   return AcceptanceVerdict{acceptance.Checks(), path};
 }
@@ -317,23 +318,6 @@ stream::BoardPose PoseOf(const ordered_json& json) {
 
 ordered_json BoardPoseJson(const stream::BoardPose& pose) {
   return {{"x_m", pose.x_m}, {"y_m", pose.y_m}, {"yaw_rad", pose.yaw_rad}};
-}
-
-void TakeTick(const v1::Tick& tick, guide::Acceptance& acceptance) {
-  if (tick.has_status()) {
-    std::vector<stream::DeviceStatus> devices;
-    for (const auto& device : tick.status().devices()) devices.push_back(wire::FromProto(device));
-    acceptance.Take(devices, tick.host_ns());
-  }
-  for (const auto& sample : tick.motion().samples()) {
-    acceptance.Take(wire::FromProto(sample), tick.host_ns());
-  }
-  for (const auto& sample : tick.boards().samples()) {
-    acceptance.Take(wire::FromProto(sample), tick.host_ns());
-  }
-  for (const auto& rig : tick.features().rigs()) {
-    acceptance.Take(wire::FromProto(rig), tick.host_ns());
-  }
 }
 
 std::map<std::string, std::string> AcceptanceMetadata(const std::string& rig,

@@ -39,9 +39,6 @@ Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path);
 /// {x_m, y_m, yaw_rad}
 nlohmann::ordered_json BoardPoseJson(const stream::BoardPose& pose);
 
-/// Hands a tick's content to the measurement; the same live and out of a recording.
-void TakeTick(const v1::Tick& tick, guide::Acceptance& acceptance);
-
 /// Metadata "acceptance" of a recording: rig, layout, phases and the verdict, so that it can be
 /// computed again.
 std::map<std::string, std::string> AcceptanceMetadata(const std::string& rig,

@@ -7,6 +7,7 @@
 #include "clients/ctl/report/device_table.h"
 #include "common/net/address.h"
 #include "common/net/client.h"
+#include "common/rig/follower.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/service_manager.h"
 #include "common/wire/wire.h"
@@ -90,16 +91,7 @@ class Connection::Implementation {
   void OnTick(const v1::Tick& tick) {
     ++ticks_;
     server_ns_ = tick.host_ns();
-    if (tick.has_status()) {
-      status_.clear();
-      for (const v1::DeviceStatus& one : tick.status().devices()) {
-        status_.push_back(wire::FromProto(one));
-      }
-    }
-    if (tick.has_setup()) {
-      setup_.clear();
-      for (const v1::RigSetup& one : tick.setup().rigs()) setup_.push_back(wire::FromProto(one));
-    }
+    sensors_.Take(wire::SensorTick(tick));
     if (tick.has_stats()) stats_ = wire::FromProto(tick.stats());
     if (on_tick_) on_tick_(tick);
   }
@@ -109,8 +101,7 @@ class Connection::Implementation {
   service_manager::ProgramEnd end_{io_};
   std::optional<transport::Client> client_;
   v1::Welcome welcome_;
-  std::vector<stream::DeviceStatus> status_;
-  std::vector<stream::RigSetup> setup_;
+  rig::Follower sensors_;
   std::optional<stream::ServerStats> stats_;
   std::function<void(const v1::Tick&)> on_tick_;
   std::string link_ = "not connected";
@@ -133,9 +124,11 @@ Result<std::unique_ptr<Connection>> Connection::Open(ConnectionOptions options) 
 }
 
 const std::vector<stream::DeviceStatus>& Connection::status() const {
-  return implementation_->status_;
+  return implementation_->sensors_.devices();
 }
-const std::vector<stream::RigSetup>& Connection::setup() const { return implementation_->setup_; }
+const std::vector<stream::RigSetup>& Connection::setup() const {
+  return implementation_->sensors_.setup();
+}
 const std::optional<stream::ServerStats>& Connection::stats() const {
   return implementation_->stats_;
 }

@@ -17,6 +17,7 @@
 #include "common/cli/cli.h"
 #include "common/frames/camera_file.h"
 #include "common/guide/set_up.h"
+#include "common/rig/follower.h"
 #include "common/runtime/clock.h"
 #include "common/wire/wire.h"
 
@@ -194,17 +195,6 @@ const std::vector<std::string>& GuidedChannels() {
   return channels;
 }
 
-void TakeTick(const v1::Tick& tick, guide::Recent& recent) {
-  if (tick.has_status()) {
-    std::vector<stream::DeviceStatus> devices;
-    for (const auto& device : tick.status().devices()) devices.push_back(wire::FromProto(device));
-    recent.SetDevices(std::move(devices));
-  }
-  for (const auto& sample : tick.motion().samples()) recent.Add(wire::FromProto(sample));
-  for (const auto& sample : tick.boards().samples()) recent.Add(wire::FromProto(sample));
-  for (const auto& sample : tick.hands().samples()) recent.Add(wire::FromProto(sample));
-}
-
 std::vector<stream::DeviceStatus> DevicesOf(const Connection& session, const std::string& rig) {
   std::vector<stream::DeviceStatus> devices;
   for (const auto& device : session.status()) {
@@ -220,7 +210,7 @@ Result<std::vector<stream::SetupItem>> RunGuided(Connection& session,
   guide::SetUp set_up(options, items);
   guide::Recent recent;
   recent.SetDevices(session.status());
-  session.set_on_tick([&](const v1::Tick& tick) { TakeTick(tick, recent); });
+  session.set_on_tick([&](const v1::Tick& tick) { recent.Take(wire::SensorTick(tick)); });
   PromptPrinter printer(prompts);
   PublishedPrompts published(session, options.rig);
   std::vector<stream::SetupItem> found;

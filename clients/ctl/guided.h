@@ -18,9 +18,6 @@ struct PromptOptions {
 /// The channels that a guided command needs.
 const std::vector<std::string>& GuidedChannels();
 
-/// Puts what a tick holds into the window that the guide looks at.
-void TakeTick(const v1::Tick& tick, guide::Recent& recent);
-
 /// Attached devices of a rig.
 std::vector<stream::DeviceStatus> DevicesOf(const Connection& session, const std::string& rig);
 

@@ -111,7 +111,14 @@ double Acceptance::Steady_s() const {
   return steady_s;
 }
 
-void Acceptance::Take(const std::vector<stream::DeviceStatus>& devices, std::int64_t) {
+void Acceptance::Take(const rig::Tick& tick) {
+  if (tick.devices) Take(*tick.devices);
+  for (const stream::MotionSample& sample : tick.motion) Take(sample);
+  for (const stream::BoardSample& sample : tick.boards) Take(sample, tick.host_ns);
+  for (const stream::RigFeatures& features : tick.features) Take(features, tick.host_ns);
+}
+
+void Acceptance::Take(const std::vector<stream::DeviceStatus>& devices) {
   if (!running_) return;
   const Phase phase = spans_.back().phase;
   for (const stream::DeviceStatus& device : devices) {
@@ -140,7 +147,7 @@ void Acceptance::Take(const std::vector<stream::DeviceStatus>& devices, std::int
   }
 }
 
-void Acceptance::Take(const stream::MotionSample& sample, std::int64_t) {
+void Acceptance::Take(const stream::MotionSample& sample) {
   const auto serial = serial_of_.find(sample.device);
   if (!running_ || serial == serial_of_.end() || spans_.back().phase == Phase::kReplug) return;
   DeviceRecord& record = devices_[serial->second];

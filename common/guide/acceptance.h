@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/guide/recent.h"
+#include "common/rig/follower.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
 
@@ -60,10 +61,7 @@ class Acceptance {
   void Begin(Phase phase, std::int64_t now_ns);
   void End(std::int64_t now_ns);
 
-  void Take(const std::vector<stream::DeviceStatus>& devices, std::int64_t now_ns);
-  void Take(const stream::MotionSample& sample, std::int64_t now_ns);
-  void Take(const stream::BoardSample& sample, std::int64_t now_ns);
-  void Take(const stream::RigFeatures& features, std::int64_t now_ns);
+  void Take(const rig::Tick& tick);
 
   std::vector<Check> Checks() const;
   const std::vector<Span>& spans() const { return spans_; }
@@ -90,6 +88,10 @@ class Acceptance {
     std::vector<double> phases_rad;
   };
 
+  void Take(const std::vector<stream::DeviceStatus>& devices);
+  void Take(const stream::MotionSample& sample);
+  void Take(const stream::BoardSample& sample, std::int64_t now_ns);
+  void Take(const stream::RigFeatures& features, std::int64_t now_ns);
   /// The phase under way, once the person has had time to follow the prompt.
   std::optional<Phase> Settled(std::int64_t now_ns) const;
   double Steady_s() const;  ///< Length of all phases but the replug.

@@ -114,6 +114,13 @@ void Recent::Add(const stream::BoardSample& sample) { Keep(boards_[sample.device
 
 void Recent::Add(const stream::HandSample& sample) { Keep(hands_, sample); }
 
+void Recent::Take(const rig::Tick& tick) {
+  if (tick.devices) SetDevices(*tick.devices);
+  for (const stream::MotionSample& sample : tick.motion) Add(sample);
+  for (const stream::BoardSample& sample : tick.boards) Add(sample);
+  for (const stream::HandSample& sample : tick.hands) Add(sample);
+}
+
 std::vector<stream::DeviceStatus> Recent::Boards(const std::string& rig) const {
   return Attached(devices_, rig, true);
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/rig/follower.h"
 #include "common/stream/device.h"
 #include "common/stream/hands.h"
 #include "common/stream/sensor.h"
@@ -40,6 +41,7 @@ Motion MotionOf(const std::vector<stream::MotionSample>& samples);
 /// The newest 30 s of the stream.
 class Recent {
  public:
+  void Take(const rig::Tick& tick);
   void SetDevices(std::vector<stream::DeviceStatus> devices) { devices_ = std::move(devices); }
   void Add(const stream::MotionSample& sample);
   void Add(const stream::BoardSample& sample);

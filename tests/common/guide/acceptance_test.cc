@@ -58,6 +58,8 @@ struct Minute {
 
  private:
   void Tick(Acceptance& acceptance, Phase phase, int i, int ticks, std::int64_t now_ns) {
+    rig::Tick tick;
+    tick.host_ns = now_ns;
     if (i % 50 == 0) {
       auto shown = devices;
       for (auto& device : shown) {
@@ -71,7 +73,7 @@ struct Minute {
         shown[3].clock_offset_sd_ms = -1;
         shown[3].jitter_ms = 90;
       }
-      acceptance.Take(shown, now_ns);
+      tick.devices = shown;
     }
     for (std::uint32_t device = 1; device <= 2; ++device) {
       stream::BoardSample sample;
@@ -81,12 +83,12 @@ struct Minute {
       if (phase == Phase::kQuiet && i > ticks / 2) sample.total_n += heavier_n;
       sample.contact = sample.cop_valid = !off;
       if (phase == Phase::kLean) sample.cop_x_m = device == 1 ? -lean_m : 0.05;
-      acceptance.Take(sample, now_ns);
+      tick.boards.push_back(sample);
     }
     for (std::uint32_t device = 3; device <= 4 && i % motion_every == 0; ++device) {
       stream::MotionSample sample;
       sample.device = device;
-      acceptance.Take(sample, now_ns);
+      tick.motion.push_back(sample);
     }
     stream::RigFeatures features;
     features.rig = "main";
@@ -101,7 +103,8 @@ struct Minute {
     pair.phase_valid = phase == Phase::kWalk || phase == Phase::kJump;
     pair.phase_rad = phase == Phase::kJump ? jump_phase_rad : -3.0;
     features.pairs = {pair};
-    acceptance.Take(features, now_ns);
+    tick.features.push_back(features);
+    acceptance.Take(tick);
   }
 };
 
