@@ -9,6 +9,7 @@
 #include "clients/view/scene/text.h"
 #include "common/base/units.h"
 #include "common/recording/recording_server.h"
+#include "common/rig/follower.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
 
@@ -491,34 +492,6 @@ scene::NoteKind KindOf(v1::Event::Kind kind) {
   }
 }
 
-void AddSensors(const v1::Tick& tick, std::int64_t offset_ns, scene::Update& update) {
-  if (tick.has_status()) {
-    update.devices.emplace();
-    for (const auto& device : tick.status().devices()) {
-      update.devices->push_back(wire::FromProto(device));
-    }
-  }
-  for (const auto& sample : tick.motion().samples()) {
-    update.motion.push_back(wire::FromProto(sample));
-    update.motion.back().received_ns -= offset_ns;
-  }
-  for (const auto& rig : tick.features().rigs()) update.features.push_back(wire::FromProto(rig));
-  for (const auto& sample : tick.boards().samples()) {
-    update.boards.push_back(wire::FromProto(sample));
-  }
-  for (const auto& sample : tick.hands().samples()) {
-    update.hands.push_back(wire::FromProto(sample));
-  }
-  if (tick.has_setup()) {
-    update.setup.emplace();
-    for (const auto& rig : tick.setup().rigs()) update.setup->push_back(wire::FromProto(rig));
-  }
-  if (tick.reference().poses_size() > 0) {
-    update.reference =
-        ReferenceOf(*tick.reference().poses().rbegin(), update.received_ns, offset_ns);
-  }
-}
-
 void AddSimulation(const v1::Tick& tick, scene::Update& update) {
   if (tick.has_skeletons()) {
     update.skeletons.emplace();
@@ -541,11 +514,15 @@ void AddSimulation(const v1::Tick& tick, scene::Update& update) {
 scene::Update Translate(const v1::Tick& tick, int source, std::int64_t received_ns,
                         std::int64_t offset_ns) {
   scene::Update update;
+  static_cast<rig::Tick&>(update) = wire::SensorTick(tick);
   update.source = source;
   update.live = !tick.snapshot() && !tick.refilled();
-  update.host_ns = tick.host_ns() - offset_ns;
+  update.host_ns -= offset_ns;
   update.received_ns = received_ns;
-  AddSensors(tick, offset_ns, update);
+  for (stream::MotionSample& sample : update.motion) sample.received_ns -= offset_ns;
+  if (tick.reference().poses_size() > 0) {
+    update.reference = ReferenceOf(*tick.reference().poses().rbegin(), received_ns, offset_ns);
+  }
   AddSimulation(tick, update);
   return update;
 }

@@ -220,10 +220,7 @@ void PoseCalibration::End() { set_up_.reset(); }
 
 void PoseCalibration::Take(const scene::Update& update) {
   if (update.host_ns != 0) now_ns_ = update.host_ns;
-  if (update.devices) recent_.SetDevices(*update.devices);
-  for (const auto& sample : update.motion) recent_.Add(sample);
-  for (const auto& sample : update.boards) recent_.Add(sample);
-  for (const auto& sample : update.hands) recent_.Add(sample);
+  recent_.Take(update);
 }
 
 guide::Answer PoseCalibration::Store(const guide::Action& action) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clients/view/scene/part.h"
+#include "common/rig/follower.h"
 #include "common/stream/character.h"
 #include "common/stream/device.h"
 #include "common/stream/game.h"
@@ -78,20 +79,14 @@ struct LinkReport {
   std::string why;  ///< A line for a person.
 };
 
-/// One tick. Fields that the tick did not carry stay empty.
-struct Update {
+/// One tick. Fields that the tick did not carry stay empty. Its stamp and the times at which motion
+/// was received are on the viewer's own clock.
+struct Update : rig::Tick {
   int source = 0;                ///< Which connection.
   bool live = true;              ///< Neither a snapshot nor a refill: its age is a latency.
-  std::int64_t host_ns = 0;      ///< The server's stamp, on the viewer's own clock.
   std::int64_t received_ns = 0;  ///< When the viewer's socket gave it, on the viewer's own clock.
-  std::optional<std::vector<stream::DeviceStatus>> devices;
-  std::vector<stream::MotionSample> motion;
-  std::vector<stream::RigFeatures> features;
-  std::vector<stream::BoardSample> boards;
-  std::vector<stream::HandSample> hands;
   std::optional<std::vector<stream::Skeleton>> skeletons;
   std::optional<stream::Track> track;
-  std::optional<std::vector<stream::RigSetup>> setup;
   std::optional<ReferencePose> reference;  ///< The newest one of the tick.
   std::optional<WorldFrame> frame;
   std::optional<stream::GameState> game;
