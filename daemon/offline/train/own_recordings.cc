@@ -17,7 +17,9 @@
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
 #include "common/recording/mcap_reader.h"
+#include "common/recording/recorded_session.h"
 #include "common/recording/recording_writer.h"
+#include "common/rig/follower.h"
 #include "common/runtime/log.h"
 #include "common/stream/setup.h"
 #include "common/wire/wire.h"
@@ -222,6 +224,8 @@ void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report) {
 
 namespace {
 
+using stream::DeviceRole;
+
 constexpr double kLeastHandSdM = 0.002;  // As live: no tracker is believed more.
 constexpr double kMostHandSdM = 1;
 constexpr double kLongestS = 2 * 3600;
@@ -249,8 +253,14 @@ std::pair<std::string, std::string> SplitTopic(const std::string& topic) {
   return {topic.substr(0, slash), topic.substr(slash + 1)};
 }
 
+/// The channels that are read, and their fields in a tick.
+const std::map<std::string, std::uint32_t> kChannels{{"status", v1::Tick::kStatusFieldNumber},
+                                                     {"setup", v1::Tick::kSetupFieldNumber},
+                                                     {"boards", v1::Tick::kBoardsFieldNumber},
+                                                     {"hands", v1::Tick::kHandsFieldNumber}};
+
 /// 0 left, 1 right; nothing for another role.
-std::optional<std::size_t> SideOf(v1::DeviceRole role, v1::DeviceRole left, v1::DeviceRole right) {
+std::optional<std::size_t> SideOf(DeviceRole role, DeviceRole left, DeviceRole right) {
   if (role == left) return 0;
   if (role == right) return 1;
   return std::nullopt;
@@ -271,7 +281,11 @@ class Reader {
     };
     visitor.message = [this](const mcap::Message& message) { Take(message); };
     const mcap::WalkEnd end = mcap::Walk(bytes, visitor, mcap::WalkMode::kSalvage);
-    for (auto& [name, rig] : rigs) rig.layout = layouts_[name];
+    for (auto& [name, rig] : rigs) {
+      for (const stream::RigSetup& setup : sensors_[name.first].setup()) {
+        if (setup.rig == name.second) rig.layout = setup.layout;
+      }
+    }
     return end;
   }
 
@@ -280,81 +294,42 @@ class Reader {
   bool boards_channel = false;
 
  private:
-  struct Bound {
-    std::string rig;
-    std::size_t side = 0;
-  };
-
   void Take(const mcap::Message& message) {
     const auto& [server, channel] = topics_[message.channel_id];
-    if (channel == "status") {
-      TakeAll<v1::DeviceStatusList>(message, [&](const auto& list) {
-        for (const v1::DeviceStatus& status : list.devices()) TakeStatus(server, status);
-      });
-    } else if (channel == "setup") {
-      TakeAll<v1::SetupState>(message, [&](const auto& setup) {
-        for (const v1::RigSetup& rig : setup.rigs()) {
-          if (!rig.has_layout()) continue;
-          layouts_[{server, rig.rig()}] = wire::FromProto(rig).layout;
-        }
-      });
-    } else if (channel == "boards") {
-      boards_channel = true;
-      TakeAll<v1::BoardSamples>(message, [&](const auto& samples) {
-        for (const v1::BoardSample& sample : samples.samples()) TakeBoard(server, sample);
-      });
-    } else if (channel == "hands") {
-      TakeAll<v1::HandSamples>(message, [&](const auto& samples) {
-        for (const v1::HandSample& sample : samples.samples()) TakeHand(server, sample);
-      });
-    }
+    const auto field = kChannels.find(channel);
+    if (field == kChannels.end()) return;
+    boards_channel = boards_channel || channel == "boards";
+    const auto parsed = recording::ReadTick({.channels = {{field->second, message.data}}});
+    if (!parsed) return;
+    const rig::Tick tick = wire::SensorTick(*parsed);
+    sensors_[server].Take(tick);
+    for (const stream::BoardSample& sample : tick.boards) TakeBoard(server, sample);
+    for (const stream::HandSample& sample : tick.hands) TakeHand(server, sample);
   }
 
-  template <typename Message, typename Use>
-  void TakeAll(const mcap::Message& message, const Use& use) {
-    Message parsed;
-    if (parsed.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) {
-      use(parsed);
-    }
+  void TakeBoard(const std::string& server, const stream::BoardSample& sample) {
+    const stream::DeviceStatus* device = sensors_[server].Find(sample.device);
+    if (device == nullptr) return;
+    const auto side = SideOf(device->role, DeviceRole::kLeftBoard, DeviceRole::kRightBoard);
+    if (!side) return;
+    Rig& rig = rigs[{server, device->rig}];
+    rig.uncalibrated = rig.uncalibrated || sample.uncalibrated;
+    const std::array<double, 4> corners_n{sample.top_left_n, sample.top_right_n,
+                                          sample.bottom_left_n, sample.bottom_right_n};
+    Append(sample.sampled_ns, corners_n, rig.boards[*side]);
   }
 
-  void TakeStatus(const std::string& server, const v1::DeviceStatus& status) {
-    const auto side =
-        SideOf(status.role(), v1::DEVICE_ROLE_LEFT_BOARD, v1::DEVICE_ROLE_RIGHT_BOARD);
-    if (side) {
-      bound_[{server, status.device()}] = {status.rig(), *side};
-    } else {
-      bound_.erase({server, status.device()});
-    }
-  }
-
-  void TakeBoard(const std::string& server, const v1::BoardSample& sample) {
-    const auto bound = bound_.find({server, sample.device()});
-    if (bound == bound_.end()) return;
-    const std::array<double, 4> corners_n{sample.top_left_n(), sample.top_right_n(),
-                                          sample.bottom_left_n(), sample.bottom_right_n()};
-    for (const double corner_n : corners_n) {
-      if (!std::isfinite(corner_n)) return;
-    }
-    Rig& rig = rigs[{server, bound->second.rig}];
-    rig.uncalibrated = rig.uncalibrated || sample.uncalibrated();
-    Append(sample.sampled_ns(), corners_n, rig.boards[bound->second.side]);
-  }
-
-  void TakeHand(const std::string& server, const v1::HandSample& sample) {
-    const auto side = SideOf(sample.role(), v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND);
-    const Eigen::Vector3d p_m = wire::FromProto(sample.position_m());
-    const Eigen::Vector3d sd_m = wire::FromProto(sample.sd_m());
-    if (!side || !(sample.confidence() > 0) || !p_m.allFinite() || !sd_m.allFinite()) return;
+  void TakeHand(const std::string& server, const stream::HandSample& sample) {
+    const auto side = SideOf(sample.role, DeviceRole::kLeftHand, DeviceRole::kRightHand);
+    if (!side || !(sample.confidence > 0)) return;
     learning::HandReading reading;
-    reading.p_W_m = p_m;
-    reading.sd_m = sd_m.cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM);
-    Append(sample.sampled_ns(), reading, rigs[{server, sample.rig()}].hands[*side]);
+    reading.p_W_m = sample.position_m;
+    reading.sd_m = sample.sd_m.cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM);
+    Append(sample.sampled_ns, reading, rigs[{server, sample.rig}].hands[*side]);
   }
 
   std::map<std::uint16_t, std::pair<std::string, std::string>> topics_;
-  std::map<std::pair<std::string, std::string>, stream::BoardLayout> layouts_;
-  std::map<std::pair<std::string, std::uint32_t>, Bound> bound_;
+  std::map<std::string, rig::Follower> sensors_;  ///< By the server's name.
 };
 
 learning::RecordedSession ToSession(const Rig& rig, const std::string& name) {
