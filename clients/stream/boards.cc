@@ -382,10 +382,6 @@ Eigen::Vector3d PlaceAt(const Stage& stage, const body::Point& point, double t_s
   return body::Place(point, KinematicsAt(stage, t_s));
 }
 
-Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s) {
-  return PlaceAt(stage, body::Fist(stage.scene.body, side), t_s);
-}
-
 body::Point CapSphere(const Stage& stage) { return body::AboveHead(stage.scene.body, kCapM); }
 
 namespace {

@@ -100,9 +100,6 @@ Feed HeadFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t 
 /// to a landmark.
 Feed PoseFeed(std::shared_ptr<const Stage> stage);
 
-/// The middle of the fist of side 0 (left) or 1, in W.
-Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s);
-
 /// A point of the body, in W.
 Eigen::Vector3d PlaceAt(const Stage& stage, const body::Point& point, double t_s);
 

@@ -52,8 +52,6 @@ class Runner {
   /// see.
   RunnerSwing Want(double time_s);
 
-  double reaction_s() const { return reaction_s_; }
-
  private:
   /// The centre line, in even steps.
   struct Point {

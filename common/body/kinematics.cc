@@ -137,17 +137,6 @@ void PointJacobian(const Skeleton& skeleton, const Kinematics& at, int joint,
   }
 }
 
-void OrientationJacobian(const Skeleton& skeleton, const Kinematics& at, int joint,
-                         JacobianRef out) {
-  FOOTING_CHECK(out.cols() == skeleton.dof);
-  out.setZero();
-  for (int i = joint; i >= 0; i = skeleton.joint(i).parent) {
-    const Joint& link = skeleton.joint(i);
-    const int end = link.first_dof + static_cast<int>(link.rotations.size());
-    for (int dof = link.first_dof; dof < end; ++dof) out.col(dof) = at.axis_W[Index(dof)];
-  }
-}
-
 namespace {
 
 constexpr double kFistShare = 0.6;
@@ -358,30 +347,6 @@ Momentum ComputeMomentum(const Body& body, const Kinematics& at,
   const Eigen::Vector3d centre = first / body.mass_kg;
   sum.p_WC = origin + centre;
   sum.angular_W -= centre.cross(sum.linear_W);
-  return sum;
-}
-
-MomentumRate ComputeMomentumRate(const Body& body, const Kinematics& at,
-                                 const JointVelocities& velocities,
-                                 const JointAccelerations& accelerations) {
-  const Eigen::Vector3d origin = at.p_WJ[0];
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();
-  MomentumRate sum;
-  for (std::size_t i = 0; i < body.masses.size(); ++i) {
-    const JointMass& mass = body.masses[i];
-    if (!(mass.mass_kg > 0)) continue;
-    const Eigen::Vector3d& w = velocities.w_WJ[i];
-    const Eigen::Vector3d& alpha = accelerations.alpha_WJ[i];
-    const Eigen::Vector3d arm = at.R_WJ[i] * mass.com_J;
-    const Eigen::Vector3d place = at.p_WJ[i] + arm - origin;
-    const Eigen::Vector3d force =
-        mass.mass_kg * (accelerations.a_WJ[i] + alpha.cross(arm) + w.cross(w.cross(arm)));
-    first += mass.mass_kg * place;
-    sum.linear_W += force;
-    sum.angular_W +=
-        place.cross(force) + Spin(mass, at.R_WJ[i], alpha) + w.cross(Spin(mass, at.R_WJ[i], w));
-  }
-  sum.angular_W -= (first / body.mass_kg).cross(sum.linear_W);
   return sum;
 }
 

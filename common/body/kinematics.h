@@ -59,10 +59,6 @@ using JacobianRef = Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>, 0, Eige
 void PointJacobian(const Skeleton& skeleton, const Kinematics& at, int joint,
                    const Eigen::Vector3d& p_W, JacobianRef out);
 
-/// w_WJ = J q_dot.
-void OrientationJacobian(const Skeleton& skeleton, const Kinematics& at, int joint,
-                         JacobianRef out);
-
 // Points of the body that sensors measure.
 
 /// A point fixed to a joint's frame.
@@ -153,17 +149,11 @@ class PoseFit {
   Eigen::LLT<Eigen::MatrixXd> solver_;
 };
 
-/// Centre of mass C and momentum of the whole body. Angular momentum and its rate are about C.
+/// Centre of mass C and momentum of the whole body. Angular momentum is about C.
 struct Momentum {
   Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();       ///< m.
   Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();   ///< kg m/s.
   Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();  ///< kg m^2/s.
-};
-
-/// Time derivative of the momentum: the sum of all outer forces, and of their moments about C.
-struct MomentumRate {
-  Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();   ///< N. Contacts give this less m g.
-  Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();  ///< N m.
 };
 
 /// Six rows (linear, then angular about C) and a column a degree of freedom.
@@ -183,11 +173,6 @@ Eigen::Vector3d CentreOfMass(const Body& body, const Kinematics& at);
 
 /// Momentum in a pose, from the velocities of the joints' frames.
 Momentum ComputeMomentum(const Body& body, const Kinematics& at, const JointVelocities& velocities);
-
-/// Its time derivative, from velocities and accelerations of the joints' frames.
-MomentumRate ComputeMomentumRate(const Body& body, const Kinematics& at,
-                                 const JointVelocities& velocities,
-                                 const JointAccelerations& accelerations);
 
 /// Centroidal momentum matrix A, (linear, angular) = A q_dot, by composites of the subtrees (Orin,
 /// Goswami and Lee 2013, "Centroidal dynamics of a humanoid robot"). `out` has dof columns. Returns

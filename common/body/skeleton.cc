@@ -106,16 +106,6 @@ Eigen::VectorXd UpperLimits(const Skeleton& skeleton) {
   return Limits(skeleton, kUnlimited, &Rotation::upper_rad);
 }
 
-void Clamp(const Skeleton& skeleton, Eigen::Ref<Eigen::VectorXd> q) {
-  for (const Joint& joint : skeleton.joints) {
-    int dof = joint.first_dof;
-    for (const Rotation& rotation : joint.rotations) {
-      q(dof) = std::clamp(q(dof), rotation.lower_rad, rotation.upper_rad);
-      ++dof;
-    }
-  }
-}
-
 Eigen::Matrix3d AxisRotation(Axis axis, double angle_rad) {
   const double cosine = std::cos(angle_rad), sine = std::sin(angle_rad);
   const int i = (static_cast<int>(axis) + 1) % 3, j = (static_cast<int>(axis) + 2) % 3;

@@ -72,9 +72,6 @@ std::vector<std::string> DofNames(const Skeleton& skeleton);
 Eigen::VectorXd LowerLimits(const Skeleton& skeleton);
 Eigen::VectorXd UpperLimits(const Skeleton& skeleton);
 
-/// Puts every angle inside its limits.
-void Clamp(const Skeleton& skeleton, Eigen::Ref<Eigen::VectorXd> q);
-
 /// Rotation by `angle_rad` about an axis of the frame.
 Eigen::Matrix3d AxisRotation(Axis axis, double angle_rad);
 

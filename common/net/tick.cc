@@ -87,11 +87,6 @@ std::size_t EncodeTickHead(const TickHead& head, std::size_t channel_bytes, char
   return static_cast<std::size_t>(end - out);
 }
 
-std::size_t TickPayloadBytes(const TickHead& head, std::size_t channel_bytes) {
-  char scratch[kMaxTickHeadBytes];
-  return EncodeTickHead(head, channel_bytes, scratch) - kLengthBytes + channel_bytes;
-}
-
 namespace {
 
 std::size_t Cost(const Tick& tick) {

@@ -65,9 +65,6 @@ inline constexpr std::size_t kMaxTickHeadBytes = 4 + 2 + 5 + 3 * 11 + 2 * 2;
 /// of the kMaxTickHeadBytes at `out`.
 std::size_t EncodeTickHead(const TickHead& head, std::size_t channel_bytes, char* out);
 
-/// Bytes of a frame's payload with such a head and such channels.
-std::size_t TickPayloadBytes(const TickHead& head, std::size_t channel_bytes);
-
 /// Whether a server can have this rate; one from another program or a file may be anything.
 constexpr bool IsTickRate(double rate_hz) { return rate_hz >= 0.1 && rate_hz <= 10'000; }
 

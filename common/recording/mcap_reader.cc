@@ -374,20 +374,6 @@ Result<Summary> ReadSummary(std::string_view file, std::uint64_t most_bytes) {
   return summary;
 }
 
-Result<void> VisitMessages(std::string_view file, const Summary& summary, std::uint64_t start_ns,
-                           std::uint64_t end_ns,
-                           const std::function<void(const Message&)>& handler) {
-  for (const ChunkIndex& index : summary.chunks) {
-    if (index.end_time_ns < start_ns || index.start_time_ns >= end_ns) continue;
-    if (Result<void> checked = CheckChunk(file, index); !checked) return checked;
-    const Result<void> visited = VisitChunk(file, index, [&](const Message& message) {
-      if (message.log_time_ns >= start_ns && message.log_time_ns < end_ns) handler(message);
-    });
-    if (!visited) return visited;
-  }
-  return {};
-}
-
 namespace {
 
 constexpr const char* kDamagedRecord = "a chunk with a damaged record";

@@ -63,12 +63,6 @@ struct Summary {
 Result<Summary> ReadSummary(std::string_view file,
                             std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// Visits the messages with start_ns <= log time < end_ns through the index, chunk after chunk in
-/// the order of the file. InvalidData with the byte offset at the first damaged chunk.
-Result<void> VisitMessages(std::string_view file, const Summary& summary, std::uint64_t start_ns,
-                           std::uint64_t end_ns,
-                           const std::function<void(const Message&)>& handler);
-
 // Reading a file from any place. What is not read is not touched.
 
 /// Checks one chunk: its CRC, and that every record in it is complete. InvalidData with the byte

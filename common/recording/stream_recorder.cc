@@ -94,7 +94,6 @@ Result<void> StreamRecorder::OnState(transport::LinkState state, const std::stri
 
 Result<void> StreamRecorder::OnNotice(const v1::Notice& notice, std::int64_t now_ns) {
   notice_ = notice.text();
-  ++notices_;
   return writer_.AddMetadata("notice", {{"address", address_},
                                         {"server", server_},
                                         {"kind", v1::Notice::Kind_Name(notice.kind())},

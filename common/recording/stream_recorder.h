@@ -42,7 +42,6 @@ class StreamRecorder {
   std::int64_t last_host_ns() const { return last_host_ns_; }
   /// Notice of what slows the server or this session, in the server's words, and how often it came.
   const std::string& notice() const { return notice_; }
-  std::uint64_t notices() const { return notices_; }
   /// The last state of the link, for a person.
   const std::string& link() const { return link_; }
   const std::string& address() const { return address_; }
@@ -56,7 +55,6 @@ class StreamRecorder {
   std::string server_;
   std::string link_ = "not connected yet";
   std::string notice_;
-  std::uint64_t notices_ = 0;
   std::int64_t last_host_ns_ = 0;
   std::uint64_t last_sequence_ = 0;
   std::uint64_t ticks_ = 0;

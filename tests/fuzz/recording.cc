@@ -1,7 +1,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <limits>
 #include <string>
 
 #include "common/net/tick.h"
@@ -15,8 +14,6 @@
 /// is made for it. What borrows from the file lies within it.
 namespace footing::fuzz {
 namespace {
-
-constexpr std::uint64_t kForever = std::numeric_limits<std::uint64_t>::max();
 
 struct Counts {
   std::size_t messages = 0, others = 0;
@@ -62,10 +59,7 @@ void CheckChunks(std::string_view file, const mcap::Summary& summary) {
 }
 
 void CheckIndexes(std::string_view file) {
-  if (const auto summary = mcap::ReadSummary(file)) {
-    CheckChunks(file, *summary);
-    (void)mcap::VisitMessages(file, *summary, 0, kForever, [](const mcap::Message&) {}).ok();
-  }
+  if (const auto summary = mcap::ReadSummary(file)) CheckChunks(file, *summary);
   (void)mcap::ReadSummary(file, 100).ok();
   (void)mcap::RebuildIndex(file, 2, 200).ok();
   if (const auto rebuilt = mcap::RebuildIndex(file, 1000)) {

@@ -240,9 +240,8 @@ void Decoder::Unknown(const osc::Message& message, const std::string& why) {
 }
 
 void Decoder::Report(Problem problem, std::string text) {
-  last_problem_ = std::move(text);
   bool& reported = reported_[static_cast<std::size_t>(problem)];
-  if (!reported) problems_.push_back(last_problem_);
+  if (!reported) problems_.push_back(std::move(text));
   reported = true;
 }
 

@@ -47,7 +47,6 @@ class Decoder {
 
   const DecoderCounts& counts() const { return counts_; }
   /// Text on the last message of no known dialect.
-  const std::string& last_problem() const { return last_problem_; }
   /// The first problem of each kind since the last call.
   std::vector<std::string> TakeProblems();
   /// Why the bones of a VMC sender make no skeleton now; empty while they do.
@@ -92,7 +91,6 @@ class Decoder {
   std::vector<Frame> frames_;
   std::int32_t footing_user_ = 0;  // User in the packet's last head message.
   DecoderCounts counts_;
-  std::string last_problem_;
   std::array<bool, 5> reported_{};  // Indexed by Problem.
   std::vector<std::string> problems_;
 };

@@ -230,7 +230,6 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
     }
   }
   progress.active_s = active.total_s();
-  progress.phases_finished = finished.size();
   while (progress.next_phase < phases.size() &&
          finished.count(phases[progress.next_phase].id) != 0) {
     ++progress.next_phase;

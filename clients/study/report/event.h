@@ -97,7 +97,6 @@ struct Progress {
   bool finished = false;
   bool withdrawn = false;
   std::size_t next_phase = 0;  ///< The first one that is not finished; as many as phases: none.
-  std::size_t phases_finished = 0;
   std::map<std::string, std::size_t> attempts;  ///< Trials begun, by phase.
   /// The outcome of the last attempt that counts, by phase.
   std::map<std::string, std::string> outcomes;

@@ -133,10 +133,6 @@ std::size_t Trial::failure_count() const {
                                                 [](const Failure& one) { return !one.undone; }));
 }
 
-double Trial::mean_time_to_failure_s() const {
-  return time_s / static_cast<double>(std::max<std::size_t>(1, failure_count()));
-}
-
 double Trial::time_to_first_failure_s() const {
   for (const Failure& failure : failures) {
     if (!failure.undone) return failure.trial_time_s;

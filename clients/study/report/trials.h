@@ -59,8 +59,6 @@ struct Trial {
 
   std::size_t Count(const std::string& kind) const;  ///< Failures of a kind, without those undone.
   std::size_t failure_count() const;
-  /// Time over failures; the whole time where there is none, as a lower bound.
-  double mean_time_to_failure_s() const;
   double time_to_first_failure_s() const;  ///< NaN: none.
 };
 

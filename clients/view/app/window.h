@@ -35,7 +35,6 @@ class PoseCalibration {
   void Begin();
   /// Closes its screen; nothing is stored.
   void End();
-  bool is_shown() const { return set_up_.has_value(); }
 
   /// A tick of footingd's.
   void Take(const scene::Update& update);

@@ -340,7 +340,6 @@ std::uint64_t Increase(std::uint64_t before, std::uint64_t now) {
 }  // namespace
 
 void Latencies::Add(std::int64_t latency_ns) {
-  last_ns_ = latency_ns;
   if (values_ns_.size() < kMaxLatencies) {
     values_ns_.push_back(latency_ns);
     return;
@@ -354,8 +353,6 @@ double Latencies::QuantileMs(double share) const {
   const auto rank = static_cast<std::size_t>(std::llround(share * (values_ns_.size() - 1.0)));
   return NanosecondsToMilliseconds(text::OfRank(values_ns_, rank));
 }
-
-double Latencies::LastMs() const { return NanosecondsToMilliseconds(last_ns_); }
 
 void Tally::Add(const WorldFrame& frame) {
   ++frames_;

@@ -80,13 +80,11 @@ class Latencies {
   void Add(std::int64_t latency_ns);
   /// The value that a share of the ticks stay below, ms; 0 without ticks. `share` in [0, 1].
   double QuantileMs(double share) const;
-  double LastMs() const;
   std::size_t count() const { return values_ns_.size(); }
 
  private:
   std::vector<std::int64_t> values_ns_;
   std::size_t next_ = 0;
-  std::int64_t last_ns_ = 0;
 };
 
 /// Counts of one run: the numbers that the program prints at its end.

@@ -45,7 +45,6 @@ HandMotion::HandMotion(std::vector<Segment> segments, const Shape& shape, double
   }
   // Both sines have mean zero, so the swing adds nothing to the inclination.
   shape_half_range_ = 0.5 * (high - low);
-  shape_peak_ = std::max(high, -low);
 
   double angle_rad = start_angle_rad;
   for (std::size_t i = 0; i < segments.size(); ++i) {

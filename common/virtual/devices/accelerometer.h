@@ -52,8 +52,6 @@ class HandMotion {
   /// At t_s since the start; before it the first instant, after the end the last segment goes on.
   Hands At(double t_s) const;
   double DurationSeconds() const { return duration_s_; }
-  /// Largest specific force of the shape alone is `amplitude_mps2` times this, from its mean.
-  double PeakOverAmplitude() const { return shape_peak_ / shape_half_range_; }
 
  private:
   struct Piece {
@@ -70,7 +68,6 @@ class HandMotion {
   Shape shape_;
   double duration_s_ = 0;
   double shape_half_range_ = 1;
-  double shape_peak_ = 1;
 };
 
 /// Specific force at rest, inclined: ax = g sin(roll), ay = g sin(pitch), the rest along -z.

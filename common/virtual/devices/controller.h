@@ -46,7 +46,6 @@ class Memory {
   std::uint8_t motion_plus_mode() const { return motion_plus_mode_; }
   /// While not ready, nothing answers at 0xa4 and 0xa6.
   void set_port_ready(bool ready) { port_ready_ = ready; }
-  bool port_ready() const { return port_ready_; }
   /// The extension answers in plain bytes: 0x55 was written to 0xa400f0, then 0x00 to 0xa400fb.
   bool extension_plain() const { return extension_plain_; }
 
@@ -113,7 +112,6 @@ class Controller {
   bool rumble() const { return rumble_; }
   /// Both enables are set, and the camera was started by its register.
   bool camera_on() const { return camera_clock_ && camera_logic_ && memory_.camera()[0x30] == 8; }
-  bool speaker_on() const { return speaker_; }
 
  private:
   Report StatusReport() const;

@@ -252,8 +252,6 @@ std::string NoKnownSet(const MarkerTracks& tracks, const std::string& names) {
 
 }  // namespace
 
-std::span<const MarkerSet> MarkerSets() { return kSets; }
-
 std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std::string_view field,
                            int side) {
   std::vector<int> found;

@@ -68,9 +68,6 @@ struct MarkerSet {
   std::string_view cervicale, sternum, head;
 };
 
-/// All sets known: opencap, plug-in-gait, cmu41, vicon53, imd29.
-std::span<const MarkerSet> MarkerSets();
-
 /// The set whose markers the tracks have, by name or, with an empty name, the one of which most are
 /// there. Names of markers may have a subject before a ':'. An error lists the sets, or what the
 /// one named lacks.

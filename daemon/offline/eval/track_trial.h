@@ -107,14 +107,13 @@ class JumpEvents {
   std::uint64_t late() const { return late_; }  ///< Those of recognised() that came late.
   std::uint64_t commanded() const { return commanded_count_; }
   std::uint64_t not_meant() const { return not_meant_; }
-  /// Shares of meant() and of commanded().
-  double recall() const { return Share(recognised_, meant_count_, 1); }
-  double false_share() const { return Share(not_meant_, commanded_count_, 0); }
+  /// Share of meant(); 1 of none.
+  double recall() const {
+    return meant_count_ > 0 ? static_cast<double>(recognised_) / static_cast<double>(meant_count_)
+                            : 1;
+  }
 
  private:
-  static double Share(std::uint64_t part, std::uint64_t all, double of_none) {
-    return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : of_none;
-  }
   void Decide(bool recognised, bool late);
 
   bool meant_ = false, commanded_ = false;  ///< Flags of the last moment.

@@ -87,8 +87,6 @@ SearchState StartSearch(int dimensions, double step) {
   return state;
 }
 
-int DescentPoints(int dimensions) { return 1 + dimensions + static_cast<int>(kLengths.size()); }
-
 void Descend(SearchState& state, const Evaluate& evaluate) {
   const auto batch = static_cast<std::uint64_t>(state.iteration);
   const Eigen::Index n = state.point.size();
@@ -151,8 +149,6 @@ struct Constants {
 };
 
 }  // namespace
-
-int EvolutionPoints(int dimensions) { return Constants(dimensions).offspring + 1; }
 
 void Evolve(SearchState& state, const Evaluate& evaluate, std::uint64_t seed) {
   const Constants c(static_cast<int>(state.point.size()));

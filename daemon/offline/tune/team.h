@@ -75,14 +75,10 @@ SearchState StartSearch(int dimensions, double step = 1);
 /// One step of steepest descent: the gradient by finite differences of half a unit, then the best
 /// of four lengths along it. Nothing better there: stays, and halves the step.
 void Descend(SearchState& state, const Evaluate& evaluate);
-/// Points one Descend evaluates.
-int DescentPoints(int dimensions);
 
 /// One generation of CMA-ES (Hansen, "The CMA Evolution Strategy: A Tutorial", 2016, with its
 /// default constants); drawn from `seed` and the iteration.
 void Evolve(SearchState& state, const Evaluate& evaluate, std::uint64_t seed);
-/// Points one Evolve evaluates: 4 + 3 ln n, and the mean.
-int EvolutionPoints(int dimensions);
 
 /// One gain that is searched over; a step of 1 in the search is `scale`: of the logarithm when
 /// `relative`, else in the gain's own unit.

@@ -20,24 +20,18 @@ void KalmanFilter::Start(std::int64_t sampled_ns, const Eigen::Vector3d& sample_
   time_ns_ = sampled_ns;
   level_mps2_ = sample_mps2;
   slope_mps3_.setZero();
-  const double slope_sd =
-      config_.model == KalmanConfig::Model::kConstantSlope ? config_.level_change_mps3 : 0.0;
-  covariance_ << MeasurementVariance(), 0, 0, slope_sd * slope_sd;
+  covariance_ << MeasurementVariance(), 0, 0,
+      config_.first_slope_sd_mps3 * config_.first_slope_sd_mps3;
 }
 
 void KalmanFilter::Predict(double dt_s) {
   level_mps2_ += dt_s * slope_mps3_;
   Eigen::Matrix2d a;
   a << 1, dt_s, 0, 1;
+  const double density = config_.slope_change_mps4 * config_.slope_change_mps4 / kNominalRateHz;
   Eigen::Matrix2d process;
-  if (config_.model == KalmanConfig::Model::kConstantSlope) {
-    const double density = config_.slope_change_mps4 * config_.slope_change_mps4 / kNominalRateHz;
-    process << dt_s * dt_s * dt_s / 3, dt_s * dt_s / 2, dt_s * dt_s / 2, dt_s;
-    process *= density;
-  } else {
-    const double density = config_.level_change_mps3 * config_.level_change_mps3 / kNominalRateHz;
-    process << density * dt_s, 0, 0, 0;
-  }
+  process << dt_s * dt_s * dt_s / 3, dt_s * dt_s / 2, dt_s * dt_s / 2, dt_s;
+  process *= density;
   covariance_ = (a * covariance_ * a.transpose() + process).eval();
 }
 

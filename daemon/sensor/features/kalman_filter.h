@@ -10,16 +10,12 @@
 ///   state   x = (level, slope)                    m/s², m/s³
 ///   predict x- = A x,      A = [1 dt; 0 1],       P- = A P A' + Q
 ///   correct x  = x- + K (z - level-),             K  = P- H' / (H P- H' + r),  H = (1 0)
-/// The three axes have the same noise, so they share one P and one K.
+/// The three axes have the same noise, so they share one P and one K. A filter of the level alone,
+/// which the paper's name for it suggests, trails a swing by a sample or two.
 namespace footing::signal {
 
 /// Process and measurement noise of the filter.
 struct KalmanConfig {
-  enum class Model { kConstantLevel, kConstantSlope };
-  /// A constant level is what the paper's name for it suggests, but it trails a swing by a sample
-  /// or two; a constant slope does not, and is the default.
-  Model model = Model::kConstantSlope;
-
   /// ADXL330: 280 (x, y) to 350 (z) µg/√Hz over the 50 Hz band are 2.5 to 3.1 mg rms.
   double sensor_noise_mps2 = 0.0304;
   /// One count of the 8-bit reports, 38 mg; its rounding error is count / √12 rms.
@@ -28,8 +24,8 @@ struct KalmanConfig {
   /// How fast the slope may change, rms, in m/s⁴: that of a 2 Hz swing of 4.5 m/s² peak,
   /// (2π 2)² 4.5 / √2. Faster swings pull the level along by themselves; rounding steps do not.
   double slope_change_mps4 = 500;
-  /// How fast the level may change when it is the only state, rms, in m/s³: (2π 2) 4.5 / √2.
-  double level_change_mps3 = 40;
+  /// Slope at the start, rms, in m/s³: (2π 2) 4.5 / √2.
+  double first_slope_sd_mps3 = 40;
 
   /// A longer pause than this restarts from the next sample.
   double longest_pause_s = 0.25;

@@ -23,11 +23,6 @@ inline constexpr std::uint8_t kMoveLights = 0x06;
 inline constexpr std::uint8_t kMoveCalibrationFeature = 0x10;
 inline constexpr std::size_t kMoveCalibrationFeatureBytes = 49;  ///< With its id byte.
 
-/// Whole input reports; the decoder needs no more than the first 44 and 41 bytes.
-constexpr std::size_t MoveReportBytes(MoveModel model) {
-  return model == MoveModel::kZcm1 ? 49 : 44;
-}
-
 enum MoveButton : std::uint32_t {
   kMoveTriangle = 0x10,
   kMoveCircle = 0x20,

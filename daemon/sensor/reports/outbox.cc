@@ -17,7 +17,6 @@ bool Outbox::Push(reports::OutputReport report) {
     return true;
   }
   if (waiting_.size() >= kCapacity) {
-    ++refused_;
     return false;
   }
   waiting_.push_back(std::move(report));

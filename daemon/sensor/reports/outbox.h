@@ -15,7 +15,7 @@ class Outbox {
   static constexpr std::int64_t kIntervalNs = 10'000'000;
   static constexpr std::size_t kCapacity = 32;
 
-  /// False, and counted, when it is full.
+  /// False when it is full.
   bool Push(reports::OutputReport report);
   /// Switches the motor; sends a report of its own when nothing else is waiting.
   void SetRumble(bool on);
@@ -23,7 +23,6 @@ class Outbox {
   std::optional<reports::OutputReport> Next(std::int64_t now_ns);
 
   bool rumble() const { return rumble_; }
-  std::uint64_t refused() const { return refused_; }
 
  private:
   std::deque<reports::OutputReport> waiting_;
@@ -31,7 +30,6 @@ class Outbox {
   bool rumble_sent_ = false;
   bool written_ = false;
   std::int64_t written_ns_ = 0;
-  std::uint64_t refused_ = 0;
 };
 
 }  // namespace footing::link

@@ -141,7 +141,6 @@ void GyroscopeBias::Take(std::int64_t sampled_ns, const Eigen::Vector3d& specifi
   if (worst_variance <= kMaxDeviationRadps * kMaxDeviationRadps) {
     bias_radps_ = mean_radps_;
     known_ = true;
-    estimated_ns_ = newest_ns_;
   }
   samples_ = 0;
 }

@@ -95,17 +95,12 @@ class GyroscopeBias {
   /// To be taken off; zero as long as the device has not been still.
   const Eigen::Vector3d& bias_radps() const { return bias_radps_; }
   bool known() const { return known_; }
-  /// Time of the newest estimate.
-  std::optional<std::int64_t> estimated_ns() const {
-    return known_ ? std::optional(estimated_ns_) : std::nullopt;
-  }
 
  private:
   void Begin(std::int64_t sampled_ns);
 
   Eigen::Vector3d bias_radps_ = Eigen::Vector3d::Zero();
   bool known_ = false;
-  std::int64_t estimated_ns_ = 0;
 
   // The window under way.
   int samples_ = 0;
@@ -147,7 +142,6 @@ struct MotionPlusCalibration {
 
 /// Registers; of an active MotionPlus it is at 0xa40020 instead.
 inline constexpr std::uint32_t kMotionPlusBlockAddress = 0xa60020;
-inline constexpr std::uint32_t kActiveMotionPlusBlockAddress = 0xa40020;
 inline constexpr std::uint16_t kMotionPlusBlockBytes = 32;
 
 /// The block is used when its CRC-32 is right (over bytes 0 to 13 and 16 to 29; upper half at 14,
@@ -195,8 +189,6 @@ struct NunchukCalibration {
 };
 
 inline constexpr std::uint32_t kNunchukBlockAddress = 0xa40020;  ///< Registers; two blocks.
-/// The copy that an active MotionPlus keeps of its child's first block.
-inline constexpr std::uint32_t kPassedNunchukBlockAddress = 0xa40040;
 inline constexpr std::uint16_t kNunchukBlockBytes = 16;
 
 /// From 32 bytes (16 of the MotionPlus' copy; fewer when the read failed): the first good block,

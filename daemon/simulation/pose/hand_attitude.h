@@ -77,7 +77,6 @@ class AttitudeFilter {
   Eigen::Vector3d bias_S_radps() const { return start_bias_S_ + errors_.head<3>(); }
   /// Gain error of each axis: by which part its reading is too large.
   Eigen::Vector3d gain_errors() const { return errors_.tail<3>(); }
-  bool resting() const { return rest_s_ >= kRestS; }
 
   /// Standard deviations of the attitude: of the heading it grows from the start; of the
   /// inclination it grows while the correction is frozen.

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -39,8 +40,8 @@ TEST(FootingDialect, OtherTypesAreAnsweredWithTheRightOnes) {
   const std::vector<osc::Argument> head{7.0f, std::int32_t{3}};
   Decode(decoder, {osc::WriteMessage("/footing/skeleton", head), LeftHand()});
   EXPECT_EQ(decoder.counts().unknown, 1u);
-  EXPECT_NE(decoder.last_problem().find("/footing/skeleton ,hi or ,ii"), std::string::npos)
-      << decoder.last_problem();
+  EXPECT_THAT(decoder.TakeProblems(),
+              testing::ElementsAre(testing::HasSubstr("/footing/skeleton ,hi or ,ii")));
 }
 
 }  // namespace

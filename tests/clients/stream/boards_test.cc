@@ -68,7 +68,8 @@ TEST_F(BoardsTest, ACameraSeesTheSpheresInTheFists) {
     ASSERT_TRUE(found[static_cast<std::size_t>(side)]);
     const Eigen::Vector3d p_W_m = *camera.X_WC * found[static_cast<std::size_t>(side)]->p_C_m;
     // Depth to some 5 mm at 2 m, and up to 8 ms of a hand's motion from row to row.
-    EXPECT_LT((p_W_m - FistAt(*stage, side, kT_s)).norm(), 0.04) << side;
+    const Eigen::Vector3d fist_W_m = PlaceAt(*stage, body::Fist(stage->scene.body, side), kT_s);
+    EXPECT_LT((p_W_m - fist_W_m).norm(), 0.04) << side;
   }
 }
 

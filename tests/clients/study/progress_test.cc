@@ -142,7 +142,6 @@ TEST(TrialRecords, CountFailuresByKindWithoutThoseUndone) {
   EXPECT_EQ(trial.position, 2u);
   EXPECT_EQ(trial.Count("jump"), 1u);
   EXPECT_EQ(trial.failure_count(), 2u);
-  EXPECT_EQ(trial.mean_time_to_failure_s(), 6);   // 12 s over 2 failures.
   EXPECT_EQ(trial.time_to_first_failure_s(), 5);  // The one at 2 s was none.
   events.Add(EventKind::kFailureRestored, {{"failure", 1}});
   EXPECT_EQ(Collect(events.list).trials.front().failure_count(), 3u);

@@ -66,18 +66,6 @@ TEST(Skeleton, AHingeTakesTheNearestAngle) {
   EXPECT_NEAR(found(3), 1.2, 1e-12);
 }
 
-TEST(Skeleton, ClampKeepsAnglesInsideTheirLimitsAndLeavesTheRootAlone) {
-  const Skeleton skeleton = StandardPerson(1.7);
-  Eigen::VectorXd q = Eigen::VectorXd::Constant(skeleton.dof, 40);
-  Clamp(skeleton, q);
-  const Eigen::VectorXd upper = UpperLimits(skeleton), lower = LowerLimits(skeleton);
-  EXPECT_EQ(q.head(6), Eigen::VectorXd::Constant(6, 40));
-  for (int i = 6; i < skeleton.dof; ++i) {
-    EXPECT_EQ(q(i), upper(i));
-    EXPECT_LT(lower(i), upper(i));
-  }
-}
-
 TEST(Skeleton, EveryDegreeOfFreedomHasANameOfItsOwn) {
   const Skeleton skeleton = StandardPerson(1.7);
   auto names = DofNames(skeleton);

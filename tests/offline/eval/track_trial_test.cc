@@ -131,7 +131,6 @@ TEST(JumpEvents, ACommandThatNobodyMeantIsFalse) {
   const JumpEvents events = Told({{{1, 1.3}}, {{1.5, 2}, {4, 4.1}}});
   EXPECT_EQ(events.commanded(), 2u);
   EXPECT_EQ(events.not_meant(), 1u);
-  EXPECT_EQ(events.false_share(), 0.5);
   EXPECT_EQ(events.recall(), 1);
 }
 
@@ -146,14 +145,15 @@ TEST(JumpEvents, AGestureThatAFallCutsShortDoesNotCountUnlessItsDelayWasOver) {
   const JumpEvents events = Told({{{1, 1.2}}, {}, 1.5});
   EXPECT_EQ(events.meant(), 0u);
   EXPECT_EQ(events.recall(), 1);
-  EXPECT_EQ(events.false_share(), 0);
+  EXPECT_EQ(events.not_meant(), 0u);
 }
 
 TEST(JumpEvents, PoolAddsUp) {
   JumpEvents events = Told({{{1, 1.2}}, {{1.5, 2}}});
   events.Pool(Told({{{1, 1.2}}, {{4, 4.1}}}));
   EXPECT_EQ(events.recall(), 0.5);
-  EXPECT_EQ(events.false_share(), 0.5);
+  EXPECT_EQ(events.commanded(), 2u);
+  EXPECT_EQ(events.not_meant(), 1u);
 }
 
 }  // namespace
