@@ -87,11 +87,11 @@ class HubReplay {
     for (const auto& [device, status] : statuses_) {
       const auto found = mountings.find(status.serial());
       if (found == mountings.end()) {
-        (void)hub_.ClearMounting(status.serial());
+        (void)hub_.setup().ClearMounting(status.serial());
         continue;
       }
-      hub_.TakeMounting({status.rig(), static_cast<stream::DeviceRole>(status.role())},
-                        found->second);
+      hub_.setup().StoreMounting({status.rig(), static_cast<stream::DeviceRole>(status.role())},
+                                 found->second);
     }
   }
 

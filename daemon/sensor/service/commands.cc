@@ -1,11 +1,9 @@
 #include "daemon/sensor/service/commands.h"
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "common/base/units.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/service/hub.h"
 
@@ -15,29 +13,30 @@ namespace {
 v1::CommandResult CarryOutSetup(Hub& hub, std::uint64_t session, const v1::Command& command) {
   if (command.has_tare()) {
     const v1::Tare& tare = command.tare();
-    return AnswerMeasured(command, hub.Tare(tare.serial(), tare.window_s(), tare.clear()));
+    return AnswerMeasured(command, hub.setup().Tare(tare.serial(), tare.window_s(), tare.clear()));
   }
   if (command.has_solve_mounting()) {
     const v1::SolveMounting& solve = command.solve_mounting();
-    if (solve.clear()) return AnswerMeasured(command, hub.ClearMounting(solve.serial()));
+    if (solve.clear()) return AnswerMeasured(command, hub.setup().ClearMounting(solve.serial()));
     return AnswerMeasured(
-        command, hub.SolveMounting(solve.serial(), {solve.still_from_ns(), solve.still_to_ns(),
-                                                    solve.steps_from_ns(), solve.steps_to_ns()}));
+        command,
+        hub.setup().SolveMounting(solve.serial(), {solve.still_from_ns(), solve.still_to_ns(),
+                                                   solve.steps_from_ns(), solve.steps_to_ns()}));
   }
   if (command.has_set_board_layout()) {
-    return AnswerMeasured(command,
-                          hub.SetBoardLayout(wire::FromProto(command.set_board_layout().layout())));
+    return AnswerMeasured(
+        command, hub.setup().SetBoardLayout(wire::FromProto(command.set_board_layout().layout())));
   }
   if (command.has_show_prompt()) {
     const v1::ShowPrompt& show = command.show_prompt();
-    return Answer(command,
-                  hub.ShowPrompt(session, show.rig(),
-                                 show.has_prompt() ? std::optional(wire::FromProto(show.prompt()))
-                                                   : std::nullopt));
+    return Answer(command, hub.setup().ShowPrompt(
+                               session, show.rig(),
+                               show.has_prompt() ? std::optional(wire::FromProto(show.prompt()))
+                                                 : std::nullopt));
   }
   const v1::RecordSetup& record = command.record_setup();
-  return Answer(command,
-                hub.RecordSetup(record.rig(), wire::FromProto(record.item()), record.forget()));
+  return Answer(command, hub.setup().RecordSetup(record.rig(), wire::FromProto(record.item()),
+                                                 record.forget()));
 }
 
 Result<void> AssignRole(Hub& hub, const Config& config, const v1::AssignRole& assign) {
@@ -108,109 +107,6 @@ v1::CommandResult CarryOut(Hub& hub, lease::LeaseControl& lease, const Config& c
     return std::move(*answer);
   }
   return CarryOutAllowed(hub, config, session, command);
-}
-
-// Commands to one device, and the leases of motors.
-namespace {
-
-constexpr double kDefaultLeaseS = 1;
-constexpr double kMaxLeaseS = 10;
-
-}  // namespace
-
-void Hub::EndLeases(std::int64_t now_ns) {
-  for (auto it = leases_.begin(); it != leases_.end();) {
-    if (now_ns < it->second.until_ns) {
-      ++it;
-      continue;
-    }
-    if (Device* device = Numbered(it->first)) device->outbox().SetRumble(false);
-    it = leases_.erase(it);
-  }
-}
-
-Result<Device*> Hub::Attached(std::uint32_t number) {
-  Device* found = Numbered(number);
-  if (found == nullptr || !found->attached()) {
-    return NoDevice("device " + std::to_string(number) + " is not attached");
-  }
-  return found;
-}
-
-Result<void> Hub::SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s) {
-  const auto attached = Attached(device);
-  if (!attached) return attached.error();
-  Device* const found = *attached;
-  found->outbox().SetRumble(on);
-  status_due_ = true;
-  if (!on) {
-    leases_.erase(device);
-  } else {
-    const double granted_s = lease_s > 0 ? std::min(lease_s, kMaxLeaseS) : kDefaultLeaseS;
-    leases_[device] = {session, ports_.now_ns() + SecondsToNanoseconds(granted_s)};
-  }
-  Flush(*found);
-  return {};
-}
-
-Result<void> Hub::SetLeds(std::uint32_t device, std::uint8_t leds) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  (*found)->SetLeds(leds);
-  status_due_ = true;
-  Flush(**found);
-  return {};
-}
-
-Result<void> Hub::SetSphere(std::uint32_t device, std::uint32_t rgb) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  if (!(*found)->SetSphere(rgb)) {
-    return UsageError("device " + std::to_string(device) + " has no sphere");
-  }
-  status_due_ = true;
-  Flush(**found);
-  return {};
-}
-
-Result<void> Hub::SetCamera(std::uint32_t device, bool on) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  if (!(*found)->SetCamera(on)) {
-    return UsageError("device " + std::to_string(device) + " has no camera");
-  }
-  return {};
-}
-
-Result<void> Hub::RequestDeviceStatus(std::uint32_t device) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  if (!(*found)->RequestStatus(ports_.now_ns())) {
-    return UsageError("device " + std::to_string(device) +
-                      " was asked less than a second ago, or has no status report");
-  }
-  return {};
-}
-
-void Hub::EndSession(std::uint64_t session) {
-  const auto is_its = [session](const auto& one) { return one.second.session == session; };
-  if (std::erase_if(prompts_, is_its) > 0) content_.has_setup = true;
-  for (auto it = leases_.begin(); it != leases_.end();) {
-    if (it->second.session != session) {
-      ++it;
-      continue;
-    }
-    if (Device* device = Numbered(it->first)) device->outbox().SetRumble(false);
-    it = leases_.erase(it);
-  }
-}
-
-void Hub::StopMotors() {
-  for (const auto& device : devices_) {
-    if (!device->attached() || !device->outbox().rumble()) continue;
-    device->outbox().SetRumble(false);
-    ports_.send(device->handle(), device->MotorOff());
-  }
 }
 
 }  // namespace footing::sensor

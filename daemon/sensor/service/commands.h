@@ -26,7 +26,7 @@ inline v1::CommandResult Answer(const v1::Command& command, const Result<void>& 
 
 /// The same with what the command measured.
 inline v1::CommandResult AnswerMeasured(const v1::Command& command,
-                                        const Result<Hub::Measured>& measured) {
+                                        const Result<Measured>& measured) {
   if (!measured) return Answer(command, Result<void>(measured.error()));
   v1::CommandResult result = Answer(command, Result<void>());
   result.set_message(measured->message);

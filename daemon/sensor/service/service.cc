@@ -156,13 +156,13 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       source_of_.erase(device);
     };
     handlers.on_hands = [this](std::int64_t received_ns, const stream::HandFrame& frame) {
-      hub_.OnHands(received_ns, frame);
+      hub_.trackers().OnHands(received_ns, frame);
     };
     handlers.on_reference = [this](std::int64_t received_ns, const stream::ReferenceFrame& frame) {
-      hub_.OnReference(received_ns, frame);
+      hub_.trackers().OnReference(received_ns, frame);
     };
     handlers.on_contacts = [this](std::int64_t received_ns, const stream::ContactFrame& frame) {
-      hub_.OnContacts(received_ns, frame);
+      hub_.trackers().OnContacts(received_ns, frame);
     };
     handlers.on_trouble = [this](const std::string& line) {
       troubles_.Say({line, "", true}, clock::MonotonicNs());

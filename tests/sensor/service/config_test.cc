@@ -116,8 +116,8 @@ stream::ReferenceFrame Joint() { return {"", 2'000'000, {-1}, {{0, 0, 1}}, {0, 0
 
 TEST(HubHands, EverySampleSinceTheLastTickIsPublishedOnce) {
   Bench bench;
-  for (int i = 0; i < 5; ++i) bench.hub().OnHands(1'000'000'000 + i, Fist(0.1 * i));
-  bench.hub().OnReference(1'000'000'000, Joint());
+  for (int i = 0; i < 5; ++i) bench.hub().trackers().OnHands(1'000'000'000 + i, Fist(0.1 * i));
+  bench.hub().trackers().OnReference(1'000'000'000, Joint());
   bench.Advance(0.05);
   ASSERT_EQ(bench.content.hands.size(), 5u);
   EXPECT_EQ(bench.content.hands[3].position_m.x(), 0.1 * 3);
@@ -139,7 +139,7 @@ TEST(HubHands, FramesThatAreReadTogetherHaveTheTimesAtWhichTheyWereExposed) {
       frame.tracker = "eye";
       frame.age_ns = ages_ns[i % 4];
       if (stated) frame.sent_ns = i * 16 * kMs + frame.age_ns;
-      bench.hub().OnHands(received_ns, frame);
+      bench.hub().trackers().OnHands(received_ns, frame);
     };
     std::vector<std::int64_t> sampled_ns;
     const auto publish = [&] {
@@ -167,15 +167,15 @@ TEST(HubHands, ABadFrameIsCountedSaidOnceAndLosesNothingElse) {
   Bench bench;
   const auto before = bench.log.size();
   for (int i = 0; i < 100; ++i) {
-    bench.hub().OnHands(0, Fist(std::numeric_limits<double>::quiet_NaN()));
-    bench.hub().OnHands(0, Fist(0.5));
+    bench.hub().trackers().OnHands(0, Fist(std::numeric_limits<double>::quiet_NaN()));
+    bench.hub().trackers().OnHands(0, Fist(0.5));
     auto pose = Joint();
     pose.com_m.x() = std::numeric_limits<double>::infinity();
-    bench.hub().OnReference(0, pose);
-    bench.hub().OnReference(0, Joint());
+    bench.hub().trackers().OnReference(0, pose);
+    bench.hub().trackers().OnReference(0, Joint());
     bench.Advance(0.01);
   }
-  EXPECT_EQ(bench.hub().refused_frames(), 200u);
+  EXPECT_EQ(bench.hub().trackers().refused_frames(), 200u);
   EXPECT_EQ(bench.content.hands.size(), 100u);
   EXPECT_EQ(bench.content.reference.size(), 100u);
   ASSERT_EQ(bench.log.size(), before + 2);
@@ -189,8 +189,10 @@ TEST(HubHands, ABadFrameIsCountedSaidOnceAndLosesNothingElse) {
 
 TEST(HubHands, AFloodIsBoundedInEachTick) {
   Bench bench;
-  for (std::size_t i = 0; i < 2 * kMaxSamplesPerTick; ++i) bench.hub().OnHands(0, Fist(0));
-  for (std::size_t i = 0; i < 2 * kMaxReferencesPerTick; ++i) bench.hub().OnReference(0, Joint());
+  for (std::size_t i = 0; i < 2 * kMaxSamplesPerTick; ++i)
+    bench.hub().trackers().OnHands(0, Fist(0));
+  for (std::size_t i = 0; i < 2 * kMaxReferencesPerTick; ++i)
+    bench.hub().trackers().OnReference(0, Joint());
   bench.Advance(0.02);
   EXPECT_EQ(bench.content.hands.size(), kMaxSamplesPerTick);
   EXPECT_EQ(bench.content.reference.size(), kMaxReferencesPerTick);
@@ -207,8 +209,9 @@ stream::ContactFrame Insole(double load_n) {
 
 TEST(HubHands, InsolesArePublishedWithTheirTimesAndBadOrTooManyFramesAreNot) {
   Bench bench;
-  bench.hub().OnContacts(1'000'000'000, Insole(300));
-  bench.hub().OnContacts(1'000'000'000, Insole(std::numeric_limits<double>::quiet_NaN()));
+  bench.hub().trackers().OnContacts(1'000'000'000, Insole(300));
+  bench.hub().trackers().OnContacts(1'000'000'000,
+                                    Insole(std::numeric_limits<double>::quiet_NaN()));
   bench.Advance(0.02);
   ASSERT_EQ(bench.content.contacts.size(), 1u);
   EXPECT_EQ(bench.content.contacts[0].rig, "main");
@@ -216,9 +219,10 @@ TEST(HubHands, InsolesArePublishedWithTheirTimesAndBadOrTooManyFramesAreNot) {
   EXPECT_EQ(bench.content.contacts[0].received_ns, 1'000'000'000);
   EXPECT_EQ(bench.content.contacts[0].sampled_ns, 997'000'000);
   EXPECT_EQ(bench.content.contacts[0].cells[0].load_n, 300);
-  EXPECT_EQ(bench.hub().refused_frames(), 1u);
+  EXPECT_EQ(bench.hub().trackers().refused_frames(), 1u);
   bench.content.contacts.clear();
-  for (std::size_t i = 0; i < 2 * kMaxContactsPerTick; ++i) bench.hub().OnContacts(0, Insole(1));
+  for (std::size_t i = 0; i < 2 * kMaxContactsPerTick; ++i)
+    bench.hub().trackers().OnContacts(0, Insole(1));
   bench.Advance(0.02);
   EXPECT_EQ(bench.content.contacts.size(), kMaxContactsPerTick);
   std::vector<std::string> names;

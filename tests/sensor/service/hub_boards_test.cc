@@ -32,7 +32,7 @@ TEST(HubBoards, TheGeometryInForceIsPublishedWithTheLayoutOfEveryRigWithABoard) 
   EXPECT_EQ(published.layout.right_geometry->sensor_distance_y_m, 0.238);
   // Its samples are computed with it: (400 - 200) / 600 of half the distance.
   EXPECT_NEAR(bench.content.boards.back().cop_x_m, 0.866 / 2 / 3, 1e-3);
-  ASSERT_TRUE(bench.hub().SetBoardLayout(OneFootEach()));
+  ASSERT_TRUE(bench.hub().setup().SetBoardLayout(OneFootEach()));
   bench.Advance(0.1);
   ASSERT_EQ(bench.content.setup.size(), 1u);
   EXPECT_EQ(bench.content.setup[0].layout.preset, "one_foot_each");
@@ -182,7 +182,7 @@ TEST(HubBoards, OneAloneWorksAndSaysThatItIs) {
   EXPECT_THAT(bench.StatusOf("a").note, HasSubstr("one board alone"));
   stream::BoardLayout single;
   single.preset = "single";
-  const auto set = bench.hub().SetBoardLayout(single);
+  const auto set = bench.hub().setup().SetBoardLayout(single);
   ASSERT_TRUE(set);
   EXPECT_THAT(set->message, HasSubstr("cannot be distinguished"));
   bench.Advance(0.5);
@@ -194,11 +194,11 @@ TEST(HubBoards, TheLayoutOfOneBoardIsRefusedForTwo) {
   stream::BoardLayout single;
   single.preset = "single";
   bench.Attach(BalanceBoard(1), "a");
-  ASSERT_TRUE(bench.hub().SetBoardLayout(single));
+  ASSERT_TRUE(bench.hub().setup().SetBoardLayout(single));
   stream::SetupItem checked;
   checked.name = "layout";
   checked.passed = true;
-  ASSERT_TRUE(bench.hub().RecordSetup("main", checked, false));
+  ASSERT_TRUE(bench.hub().setup().RecordSetup("main", checked, false));
   bench.Advance(0.5);
   const auto lines = bench.log.size();
   const auto second = bench.Attach(BalanceBoard(2), "b");
@@ -214,14 +214,14 @@ TEST(HubBoards, TheLayoutOfOneBoardIsRefusedForTwo) {
                                    std::string::npos;
                           }),
             1);
-  const auto refused = bench.hub().SetBoardLayout(single);
+  const auto refused = bench.hub().setup().SetBoardLayout(single);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("rig main has 2"));
-  ASSERT_TRUE(bench.hub().SetBoardLayout(OneFootEach()));
+  ASSERT_TRUE(bench.hub().setup().SetBoardLayout(OneFootEach()));
   bench.Advance(0.5);
   EXPECT_EQ(bench.StatusOf("a").note, "");
   bench.Detach(second);
-  EXPECT_TRUE(bench.hub().SetBoardLayout(single));
+  EXPECT_TRUE(bench.hub().setup().SetBoardLayout(single));
 }
 
 class MovedBoard : public testing::Test {
@@ -231,12 +231,13 @@ class MovedBoard : public testing::Test {
     bench_.Attach(BalanceBoard(2), "b");
     bench_.corners = {0, 0, 0, 0};
     bench_.Advance(3);
-    ASSERT_TRUE(bench_.hub().Tare("a", 0, false) && bench_.hub().Tare("b", 0, false));
+    ASSERT_TRUE(bench_.hub().setup().Tare("a", 0, false) &&
+                bench_.hub().setup().Tare("b", 0, false));
   }
   void Check() {
-    ASSERT_TRUE(bench_.hub().SetBoardLayout(OneFootEach()));
-    ASSERT_TRUE(bench_.hub().RecordSetup("main", Passed("layout"), false));
-    ASSERT_TRUE(bench_.hub().RecordSetup("main", Passed("tare", "a"), false));
+    ASSERT_TRUE(bench_.hub().setup().SetBoardLayout(OneFootEach()));
+    ASSERT_TRUE(bench_.hub().setup().RecordSetup("main", Passed("layout"), false));
+    ASSERT_TRUE(bench_.hub().setup().RecordSetup("main", Passed("tare", "a"), false));
   }
   void Lift() {
     bench_.corners = {-8, -8, -8, -8};  // Its feet hang: some 3 kg less than standing.
@@ -265,7 +266,7 @@ TEST_F(MovedBoard, IsToldOverARestartUntilTheLayoutIsCheckedAgain) {
   again.Advance(1);
   EXPECT_TRUE(again.StatusOf("a").moved);
   EXPECT_TRUE(ItemOf(again, "layout").stale);
-  ASSERT_TRUE(again.hub().RecordSetup("main", Passed("layout"), false));
+  ASSERT_TRUE(again.hub().setup().RecordSetup("main", Passed("layout"), false));
   again.Advance(1);
   EXPECT_FALSE(again.StatusOf("a").moved);
   EXPECT_FALSE(ItemOf(again, "layout").stale);

@@ -114,36 +114,39 @@ TEST(HubFaults, EndlesslyManySerialsAreForgottenAgain) {
   bench.Attach(Wiimote(1), "stays");
   for (std::size_t i = 0; i < 300; ++i) bench.Detach(bench.Attach(Wiimote(1), Serial(i)));
   bench.Advance(0.5);
-  EXPECT_LE(bench.content.status.size(), Hub::kMaxDevices);
+  EXPECT_LE(bench.content.status.size(), DeviceTable::kMaxDevices);
   EXPECT_EQ(bench.StatusOf("stays").state, DeviceState::kLive);
 }
 
 TEST(HubFaults, TooManyDevicesAtOnceAreRefusedWithALine) {
   Bench bench;
-  for (std::size_t i = 0; i < Hub::kMaxDevices + 3; ++i) {
+  for (std::size_t i = 0; i < DeviceTable::kMaxDevices + 3; ++i) {
     bench.Attach(Wiimote(i), Serial(i));
   }
   bench.Advance(0.2);
-  EXPECT_EQ(bench.content.status.size(), Hub::kMaxDevices);
+  EXPECT_EQ(bench.content.status.size(), DeviceTable::kMaxDevices);
   EXPECT_NE(bench.log.back().find("ignored"), std::string::npos);
 }
 
 TEST(HubFaults, ARealDeviceGetsAPlaceWhenStandInsHaveAll) {
   Bench bench;
   devices::DeviceHandle newest = 0;
-  for (std::size_t i = 0; i < Hub::kMaxDevices; ++i) newest = bench.Attach(Wiimote(i), Serial(i));
+  for (std::size_t i = 0; i < DeviceTable::kMaxDevices; ++i)
+    newest = bench.Attach(Wiimote(i), Serial(i));
   bench.Attach(Wiimote(100), "real", false);
   bench.Advance(0.5);
   EXPECT_EQ(bench.StatusOf("real").state, DeviceState::kLive);
-  EXPECT_EQ(bench.content.status.size(), Hub::kMaxDevices);
+  EXPECT_EQ(bench.content.status.size(), DeviceTable::kMaxDevices);
   EXPECT_THAT(bench.refused, ElementsAre(newest));
   EXPECT_EQ(bench.StatusOf(Serial(0)).state, DeviceState::kLive);
-  EXPECT_THAT(bench.log, Contains(HasSubstr(Serial(Hub::kMaxDevices - 1) + " is no longer taken")));
+  EXPECT_THAT(bench.log,
+              Contains(HasSubstr(Serial(DeviceTable::kMaxDevices - 1) + " is no longer taken")));
 }
 
 TEST(HubFaults, RealDevicesAreNeverDroppedForOthers) {
   Bench bench;
-  for (std::size_t i = 0; i < Hub::kMaxDevices; ++i) bench.Attach(Wiimote(i), Serial(i), false);
+  for (std::size_t i = 0; i < DeviceTable::kMaxDevices; ++i)
+    bench.Attach(Wiimote(i), Serial(i), false);
   bench.Attach(Wiimote(100), "stand-in", true);
   bench.Attach(Wiimote(101), "one more", false);
   bench.Advance(0.5);

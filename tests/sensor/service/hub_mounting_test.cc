@@ -35,13 +35,13 @@ class MountedLeg : public testing::Test {
     };
     bench.Attach(Wiimote(1), "a");
   }
-  Result<Hub::Measured> Solve() {
+  Result<Measured> Solve() {
     bench_.Advance(3);
     const std::int64_t stood_ns = bench_.now_ns();
     steps_from_s_ = NanosecondsToSeconds(stood_ns);
     steps_to_s_ = steps_from_s_ + 3;
     bench_.Advance(4);
-    return bench_.hub().SolveMounting(
+    return bench_.hub().setup().SolveMounting(
         "a", {stood_ns - 2'100'000'000, stood_ns - 20'000'000, stood_ns, stood_ns + 3'500'000'000});
   }
 
@@ -89,14 +89,14 @@ TEST_F(MountedLeg, IsKeptOverARestartForThisRoleOnly) {
   ASSERT_TRUE(again.hub().AssignRole("a", {"main", DeviceRole::kLeftLeg}));
   again.Advance(0.3);
   EXPECT_TRUE(again.StatusOf("a").mounted);
-  ASSERT_TRUE(again.hub().ClearMounting("a"));
+  ASSERT_TRUE(again.hub().setup().ClearMounting("a"));
   again.Advance(0.3);
   EXPECT_FALSE(again.StatusOf("a").mounted);
 }
 
 TEST_F(MountedLeg, ThatSlipsIsToldOverARestartUntilItIsSolvedAgain) {
   ASSERT_TRUE(Solve());
-  ASSERT_TRUE(bench_.hub().RecordSetup("main", Passed("mounting", "a"), false));
+  ASSERT_TRUE(bench_.hub().setup().RecordSetup("main", Passed("mounting", "a"), false));
   bench_.Advance(5);
   EXPECT_FALSE(bench_.StatusOf("a").slipped);
   rotation_MS_ =
@@ -121,11 +121,11 @@ TEST_F(MountedLeg, IsRefusedWithoutSamplesWithoutARoleAndForABoard) {
   bench_.Advance(1);
   const MountingStretches early = {bench_.now_ns(), bench_.now_ns() + 2, bench_.now_ns() + 2,
                                    bench_.now_ns() + 4};
-  const auto refused = bench_.hub().SolveMounting("a", early);
+  const auto refused = bench_.hub().setup().SolveMounting("a", early);
   EXPECT_THAT(refused.ok() ? "" : refused.error().message, HasSubstr("are needed"));
-  EXPECT_FALSE(bench_.hub().SolveMounting("a", {}));
-  EXPECT_FALSE(bench_.hub().SolveMounting("board", early));
-  EXPECT_FALSE(bench_.hub().SolveMounting("nobody", early));
+  EXPECT_FALSE(bench_.hub().setup().SolveMounting("a", {}));
+  EXPECT_FALSE(bench_.hub().setup().SolveMounting("board", early));
+  EXPECT_FALSE(bench_.hub().setup().SolveMounting("nobody", early));
 }
 
 }  // namespace

@@ -19,13 +19,13 @@ TEST(HubLayout, IsCheckedKeptAndPublished) {
   Kept kept;
   {
     Bench bench({}, kept.storage());
-    ASSERT_TRUE(bench.hub().SetBoardLayout(OneFootEach()));
-    ASSERT_TRUE(bench.hub().RecordSetup("", Passed("layout"), false));
+    ASSERT_TRUE(bench.hub().setup().SetBoardLayout(OneFootEach()));
+    ASSERT_TRUE(bench.hub().setup().RecordSetup("", Passed("layout"), false));
     auto wider = OneFootEach();
     wider.gap_mm = 120;
-    EXPECT_FALSE(bench.hub().SetBoardLayout(wider)) << "the poses leave 20 mm";
+    EXPECT_FALSE(bench.hub().setup().SetBoardLayout(wider)) << "the poses leave 20 mm";
     wider.left.y_m += 0.1;
-    ASSERT_TRUE(bench.hub().SetBoardLayout(wider));
+    ASSERT_TRUE(bench.hub().setup().SetBoardLayout(wider));
     bench.Advance(0.1);
     EXPECT_TRUE(ItemOf(bench, "layout").stale) << "set anew, not checked";
   }
@@ -39,12 +39,12 @@ TEST(HubLayout, IsCheckedKeptAndPublished) {
 
 TEST(HubRecord, ForgetsAndRefusesWhatIsTooLong) {
   Bench bench;
-  ASSERT_TRUE(bench.hub().RecordSetup("main", Passed("weigh"), false));
+  ASSERT_TRUE(bench.hub().setup().RecordSetup("main", Passed("weigh"), false));
   bench.Advance(0.1);
   EXPECT_TRUE(ItemOf(bench, "weigh").passed);
-  EXPECT_FALSE(bench.hub().RecordSetup("main", Passed(""), false));
-  EXPECT_FALSE(bench.hub().RecordSetup(std::string(65, 'r'), Passed("weigh"), false));
-  ASSERT_TRUE(bench.hub().RecordSetup("main", {}, true));
+  EXPECT_FALSE(bench.hub().setup().RecordSetup("main", Passed(""), false));
+  EXPECT_FALSE(bench.hub().setup().RecordSetup(std::string(65, 'r'), Passed("weigh"), false));
+  ASSERT_TRUE(bench.hub().setup().RecordSetup("main", {}, true));
   bench.Advance(0.1);
   EXPECT_TRUE(bench.content.setup.empty());
 }
@@ -59,26 +59,26 @@ TEST(HubPrompts, ArePublishedUntilTheSetupOrItsSessionEnds) {
     const auto& setup = bench.content.setup;
     return setup.empty() ? std::nullopt : setup[0].prompt;
   };
-  ASSERT_TRUE(bench.hub().ShowPrompt(7, "", shake));
+  ASSERT_TRUE(bench.hub().setup().ShowPrompt(7, "", shake));
   ASSERT_TRUE(published());
   EXPECT_EQ(bench.content.setup[0].rig, "main");
   EXPECT_EQ(published()->text, shake.text);
   EXPECT_EQ(published()->gesture, stream::Gesture::kShake);
   EXPECT_EQ(published()->role, DeviceRole::kLeftHand);
   EXPECT_EQ(published()->number, 1u);
-  ASSERT_TRUE(bench.hub().ShowPrompt(7, "main", shake));
+  ASSERT_TRUE(bench.hub().setup().ShowPrompt(7, "main", shake));
   EXPECT_EQ(published()->number, 2u) << "asked for again";
   bench.hub().EndSession(6);
   EXPECT_TRUE(published());
   bench.hub().EndSession(7);
   EXPECT_FALSE(published());
-  ASSERT_TRUE(bench.hub().ShowPrompt(8, "main", shake));
+  ASSERT_TRUE(bench.hub().setup().ShowPrompt(8, "main", shake));
   ASSERT_TRUE(published());
-  ASSERT_TRUE(bench.hub().ShowPrompt(8, "main", std::nullopt));
+  ASSERT_TRUE(bench.hub().setup().ShowPrompt(8, "main", std::nullopt));
   EXPECT_FALSE(published());
   stream::SetupPrompt long_one = shake;
   long_one.text = std::string(1025, 'x');
-  EXPECT_FALSE(bench.hub().ShowPrompt(8, "main", long_one));
+  EXPECT_FALSE(bench.hub().setup().ShowPrompt(8, "main", long_one));
   Bench again({}, kept.storage());
   again.Advance(0.1);
   EXPECT_TRUE(again.content.setup.empty()) << "nothing of it is kept";

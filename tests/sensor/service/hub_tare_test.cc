@@ -21,7 +21,7 @@ TEST(HubTare, TakesTheEmptyWeightOffWithoutClampingAndIsKept) {
     bench.corners = {5, -4, 3, -2};
     bench.Advance(3);
     EXPECT_FALSE(bench.StatusOf("a").tared);
-    const auto tare = bench.hub().Tare("a", 0, false);
+    const auto tare = bench.hub().setup().Tare("a", 0, false);
     ASSERT_TRUE(tare) << tare.error().message;
     EXPECT_EQ(tare->unit, "N");
     EXPECT_LT(tare->residual, 1);
@@ -40,7 +40,7 @@ TEST(HubTare, TakesTheEmptyWeightOffWithoutClampingAndIsKept) {
   again.Advance(0.5);
   EXPECT_TRUE(again.StatusOf("a").tared);
   EXPECT_NEAR(again.content.boards.back().top_left_n, 0, 0.2);
-  ASSERT_TRUE(again.hub().Tare("a", 0, true));
+  ASSERT_TRUE(again.hub().setup().Tare("a", 0, true));
   again.Advance(0.1);
   EXPECT_FALSE(again.StatusOf("a").tared);
   EXPECT_NEAR(again.content.boards.back().top_left_n, 5, 0.2);
@@ -52,20 +52,20 @@ TEST(HubTare, RefusesAMovingLoadAPersonAnotherDeviceAndNobody) {
   bench.Attach(Wiimote(2), "b");
   bench.corners = {10, 10, 10, 10};
   bench.Advance(1);
-  const auto early = bench.hub().Tare("a", 0, false);
+  const auto early = bench.hub().setup().Tare("a", 0, false);
   EXPECT_THAT(early.ok() ? "" : early.error().message, HasSubstr("2.0 are needed"));
   bench.Advance(1.5);
   bench.corners = {20, 20, 20, 20};  // Somebody puts a foot on it.
   bench.Advance(0.5);
-  const auto moving = bench.hub().Tare("a", 0, false);
+  const auto moving = bench.hub().setup().Tare("a", 0, false);
   EXPECT_THAT(moving.ok() ? "" : moving.error().message, HasSubstr("moves"));
   bench.corners = {170, 170, 170, 170};
   bench.Advance(3);
-  const auto heavy = bench.hub().Tare("a", 0, false);
+  const auto heavy = bench.hub().setup().Tare("a", 0, false);
   EXPECT_THAT(heavy.ok() ? "" : heavy.error().message, HasSubstr("step off"));
-  EXPECT_FALSE(bench.hub().Tare("b", 0, false));
-  EXPECT_FALSE(bench.hub().Tare("nobody", 0, false));
-  EXPECT_FALSE(bench.hub().Tare("a", std::nan(""), false));
+  EXPECT_FALSE(bench.hub().setup().Tare("b", 0, false));
+  EXPECT_FALSE(bench.hub().setup().Tare("nobody", 0, false));
+  EXPECT_FALSE(bench.hub().setup().Tare("a", std::nan(""), false));
   EXPECT_FALSE(bench.StatusOf("a").tared);
 }
 
