@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "clients/study/plan/protocol.h"
@@ -12,6 +14,8 @@
 #include "clients/study/session/session_context.h"
 #include "common/base/result.h"
 #include "common/net/address.h"
+#include "common/net/framing.h"
+#include "common/net/listener.h"
 
 namespace footing::study {
 
@@ -42,11 +46,10 @@ class SurveyScreen {
   /// Listens; errors say which address, why, and what to do.
   static Result<std::unique_ptr<SurveyScreen>> Open(Console& console,
                                                     const transport::Address& address);
-  ~SurveyScreen();
   SurveyScreen(const SurveyScreen&) = delete;
   SurveyScreen& operator=(const SurveyScreen&) = delete;
 
-  const transport::Address& address() const;
+  const transport::Address& address() const { return listener_->address(); }
   bool connected() const;
 
   /// Shows a question, to which a number of its own is given.
@@ -55,12 +58,19 @@ class SurveyScreen {
   void Say(const std::string& message);
   /// The answer to the question, once it has come; an answer to another one, or one outside of a
   /// rating's range, is dropped.
-  std::optional<std::string> TakeAnswer();
+  std::optional<std::string> TakeAnswer() { return std::exchange(answer_, std::nullopt); }
 
  private:
-  class Implementation;
-  explicit SurveyScreen(std::unique_ptr<Implementation> implementation);
-  std::unique_ptr<Implementation> implementation_;
+  SurveyScreen() = default;
+  void Accept(transport::Socket socket);
+  void OnFrame(std::string_view payload);
+  void Show(screen::Shown shown);
+
+  std::unique_ptr<transport::Listener> listener_;
+  std::vector<std::unique_ptr<transport::FramedConnection>> connections_;  ///< Oldest first.
+  screen::Shown shown_;
+  std::uint64_t asked_ = 0;  ///< Questions so far.
+  std::optional<std::string> answer_;
 };
 
 }  // namespace footing::study

@@ -18,6 +18,9 @@
 #include "common/base/result.h"
 #include "common/net/address.h"
 #include "common/recording/mcap_records.h"
+#include "common/recording/recording_writer.h"
+#include "common/recording/stream_recorder.h"
+#include "common/runtime/timer.h"
 #include "common/stream/gait.h"
 #include "common/stream/trial.h"
 
@@ -140,7 +143,7 @@ class TrialRecorder {
   };
 
   /// `marks` is the metadata record "trial".
-  static Result<std::unique_ptr<TrialRecorder>> Begin(Console& console, Options options,
+  static Result<std::unique_ptr<TrialRecorder>> Begin(Console& console, const Options& options,
                                                       const mcap::TextMap& marks);
   ~TrialRecorder();
   TrialRecorder(const TrialRecorder&) = delete;
@@ -149,7 +152,7 @@ class TrialRecorder {
   /// Returns when something of every server has arrived.
   Result<void> AwaitFirst(Console& console) const;
   /// A full disk, as soon as it is noticed.
-  const Result<void>& written() const;
+  const Result<void>& written() const { return written_; }
   /// Runs until everything up to this instant is in the file, for a short while at most: events
   /// reach other connections first. A server with another clock is waited for in vain.
   Waited CatchUp(Console& console, std::int64_t host_ns) const;
@@ -157,9 +160,20 @@ class TrialRecorder {
   Result<void> Finish(const mcap::TextMap& outcome);
 
  private:
-  class Implementation;
-  explicit TrialRecorder(std::unique_ptr<Implementation> implementation);
-  std::unique_ptr<Implementation> implementation_;
+  TrialRecorder(Console& console, recording::RecordingWriter writer)
+      : writer_(std::move(writer)), flush_(console.io()) {}
+  Result<void> Describe(const Options& options, const mcap::TextMap& marks);
+  /// Whether every server's recorder does; true, too, once something could not be written.
+  template <typename Does>
+  bool EveryServer(const Does& does) const;
+  void Keep(Result<void> written);
+  void FlushLater();
+
+  recording::RecordingWriter writer_;
+  recording::ServerNames names_;
+  std::vector<std::unique_ptr<recording::ServerRecorder>> servers_;
+  Result<void> written_;
+  timer::Timer flush_;
 };
 
 /// Takes a failure of an attempt out of the counts: with footing-sim as long as that shows the
