@@ -350,7 +350,7 @@ Result<BlinkReport> CalibrateAndStore(const CalibrateArguments& arguments) {
   if (const auto checked = Check(arguments.line); !checked) return checked.error();
   auto camera = frames::ReadUncalibratedCamera(arguments.line.camera_file);
   if (!camera) return camera.error();
-  TakeExposure(arguments.line, *camera);
+  ApplyExposure(arguments.line, *camera);
   const auto sensor = transport::AddressOrDefault(arguments.sensor, "sensor");
   if (!sensor) return sensor.error();
   auto report = Calibrate({*camera, arguments.line.frames, *sensor});

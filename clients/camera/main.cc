@@ -62,7 +62,7 @@ int RunTracking(camera::TrackingOptions& options, const camera::CommandLine& lin
   const auto camera = frames::ReadCameraFile(line.camera_file);
   if (!camera) return cli::Report(camera.error());
   options.camera = *camera;
-  camera::TakeExposure(line, options.camera);
+  camera::ApplyExposure(line, options.camera);
   options.camera_path = line.camera_file;
   options.frames = line.frames;
   const auto devices = transport::AddressOrDefault(addresses.to, "devices");

@@ -516,7 +516,7 @@ Result<void> Check(const CommandLine& line) {
   return {};
 }
 
-void TakeExposure(const CommandLine& line, frames::CameraFile& camera) {
+void ApplyExposure(const CommandLine& line, frames::CameraFile& camera) {
   if (!line.frames.device.empty())
     camera.settings.shutter.exposure_s = line.frames.video.exposure_s;
 }

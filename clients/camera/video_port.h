@@ -133,7 +133,7 @@ void AddCommandLine(CLI::App& app, CommandLine& line);
 Result<void> Check(const CommandLine& line);
 
 /// A camera's exposure is the command line's; that of other frames is the camera file's.
-void TakeExposure(const CommandLine& line, frames::CameraFile& camera);
+void ApplyExposure(const CommandLine& line, frames::CameraFile& camera);
 
 /// footing-camera calibrate and lens; `exit_code` is set when one has run.
 void AddCalibrateCommand(CLI::App& app, int& exit_code);

@@ -16,7 +16,7 @@ constexpr std::string_view kBlanks = " \t";
 constexpr std::string_view kStatusLine = "NATS/1.0 ";
 
 /// Takes the first word off `text`; empty when there is none.
-std::string_view TakeWord(std::string_view& text) {
+std::string_view PopWord(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
   const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
   const std::string_view word = text.substr(0, end);
@@ -81,7 +81,7 @@ Result<std::size_t> Parser::Step(std::string_view rest, const Handlers& handlers
 
 Result<void> Parser::OnLine(std::string_view line, const Handlers& handlers) {
   std::string_view words = line;
-  const std::string_view name = TakeWord(words);
+  const std::string_view name = PopWord(words);
   if (name == "MSG") return OnAnnounced(words, false);
   if (name == "HMSG") return OnAnnounced(words, true);
   if (name == "PING") {
@@ -105,7 +105,7 @@ Result<void> Parser::OnLine(std::string_view line, const Handlers& handlers) {
 Result<void> Parser::OnAnnounced(std::string_view words, bool has_header) {
   std::vector<std::string_view> parts;
   constexpr std::size_t kMostParts = 5;
-  for (std::string_view word = TakeWord(words); !word.empty(); word = TakeWord(words)) {
+  for (std::string_view word = PopWord(words); !word.empty(); word = PopWord(words)) {
     if (parts.size() == kMostParts) return Wrong("a message of too many parts");
     parts.push_back(word);
   }

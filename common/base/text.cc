@@ -57,7 +57,7 @@ std::string_view Trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-std::string_view TakeWord(std::string_view& line) {
+std::string_view PopWord(std::string_view& line) {
   const auto begin = line.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) {
     line = {};
@@ -71,7 +71,7 @@ std::string_view TakeWord(std::string_view& line) {
 
 std::vector<std::string_view> SplitAtBlanks(std::string_view line) {
   std::vector<std::string_view> words;
-  for (auto word = TakeWord(line); !word.empty(); word = TakeWord(line)) words.push_back(word);
+  for (auto word = PopWord(line); !word.empty(); word = PopWord(line)) words.push_back(word);
   return words;
 }
 

@@ -48,7 +48,7 @@ std::vector<std::string_view> SplitAtBlanks(std::string_view line);
 std::vector<std::string_view> Fields(std::string_view line, char separator);
 
 /// Takes the next word off the front of `line`; empty at its end.
-std::string_view TakeWord(std::string_view& line);
+std::string_view PopWord(std::string_view& line);
 
 /// With its ASCII letters in lower case.
 std::string Lower(std::string text);

@@ -304,7 +304,7 @@ std::optional<std::string_view> Body(std::string_view bytes, std::uint64_t offse
   if (offset > bytes.size()) return std::nullopt;
   Cursor head(bytes.substr(offset));
   const std::uint8_t found = head.U8();
-  const std::string_view body = head.Take(head.U64());
+  const std::string_view body = head.Bytes(head.U64());
   if (!head.ok() || found != static_cast<std::uint8_t>(opcode)) return std::nullopt;
   return body;
 }
@@ -365,7 +365,7 @@ Result<Summary> ReadSummary(std::string_view file, std::uint64_t most_bytes) {
   for (std::uint64_t offset = 0; offset < records.size();) {
     Cursor head(records.substr(offset));
     const std::uint8_t opcode = head.U8();
-    const std::string_view record = head.Take(head.U64());
+    const std::string_view record = head.Bytes(head.U64());
     if (!head.ok() || !Take(opcode, record, summary)) {
       return At(start + offset, "a damaged record of the summary");
     }
@@ -440,7 +440,7 @@ struct Budget {
   std::uint64_t left = 0;
   bool exceeded = false;
 
-  bool Take(std::uint64_t bytes) {
+  bool Spend(std::uint64_t bytes) {
     if (bytes > left) exceeded = true;
     if (!exceeded) left -= bytes;
     return !exceeded;
@@ -456,7 +456,7 @@ bool TakeOnce(std::string_view body, std::optional<T> (*decode)(std::string_view
               std::map<std::uint16_t, T>& kept, Budget& budget) {
   const std::uint16_t id = Cursor(body).U16();
   if (kept.count(id) > 0) return true;
-  if (!budget.Take(body.size())) return false;
+  if (!budget.Spend(body.size())) return false;
   std::optional<T> decoded = decode(body);
   if (!decoded) return false;
   kept.emplace(id, *std::move(decoded));
@@ -474,7 +474,7 @@ bool TakeRecord(const FoundRecord& record, Summary& summary, ChunkIndex& index, 
   const std::optional<Message> message = DecodeMessage(record.body);
   if (!message) return false;
   const bool fresh = index.message_index_offsets.emplace(message->channel_id, 0).second;
-  return !fresh || budget.Take(kChannelEntryBytes);
+  return !fresh || budget.Spend(kChannelEntryBytes);
 }
 
 /// The chunk's index entry; nothing when the chunk is damaged or compressed, or the budget is
@@ -482,7 +482,7 @@ bool TakeRecord(const FoundRecord& record, Summary& summary, ChunkIndex& index, 
 std::optional<ChunkIndex> IndexOf(std::string_view body, std::uint64_t offset, Summary& summary,
                                   Budget& budget) {
   const std::optional<Chunk> chunk = DecodeChunk(body);
-  if (!chunk || !IsWhole(*chunk) || !budget.Take(kChunkEntryBytes)) return std::nullopt;
+  if (!chunk || !IsWhole(*chunk) || !budget.Spend(kChunkEntryBytes)) return std::nullopt;
   ChunkIndex index;
   index.start_time_ns = chunk->start_time_ns;
   index.end_time_ns = chunk->end_time_ns;
@@ -497,7 +497,7 @@ std::optional<ChunkIndex> IndexOf(std::string_view body, std::uint64_t offset, S
 
 void TakeMetadata(std::string_view body, std::uint64_t offset, Summary& summary, Budget& budget) {
   const std::string_view name = Cursor(body).Text();
-  if (!budget.Take(kMetadataEntryBytes + name.size())) return;
+  if (!budget.Spend(kMetadataEntryBytes + name.size())) return;
   if (!DecodeMetadata(body)) return;
   summary.metadata.push_back({offset, kRecordHeadBytes + body.size(), std::string(name)});
 }

@@ -220,7 +220,7 @@ std::optional<T> IfOk(const Cursor& cursor, T record) {
 }  // namespace
 
 std::uint64_t Cursor::Little(std::size_t count) {
-  const std::string_view bytes = Take(count);
+  const std::string_view bytes = Bytes(count);
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     value |= static_cast<std::uint64_t>(static_cast<std::uint8_t>(bytes[i])) << (8 * i);
@@ -228,7 +228,7 @@ std::uint64_t Cursor::Little(std::size_t count) {
   return value;
 }
 
-std::string_view Cursor::Take(std::uint64_t count) {
+std::string_view Cursor::Bytes(std::uint64_t count) {
   if (!ok_ || count > bytes_.size()) {
     ok_ = false;
     return {};
@@ -293,7 +293,7 @@ std::optional<Chunk> DecodeChunk(std::string_view body, bool cut) {
   Chunk chunk{in.U64(), in.U64(), in.U64(), in.U32(), std::string(in.Text()), {}};
   const std::uint64_t size = in.U64();
   if (!in.ok()) return std::nullopt;
-  chunk.records = cut && size > in.rest().size() ? in.rest() : in.Take(size);
+  chunk.records = cut && size > in.rest().size() ? in.rest() : in.Bytes(size);
   return IfOk(in, std::move(chunk));
 }
 
@@ -318,7 +318,7 @@ std::optional<ChunkIndex> DecodeChunkIndex(std::string_view body) {
 std::optional<Attachment> DecodeAttachment(std::string_view body) {
   Cursor in(body);
   Attachment attachment{in.U64(), in.U64(), std::string(in.Text()), std::string(in.Text()),
-                        in.Take(in.U64())};
+                        in.Bytes(in.U64())};
   const std::string_view covered = body.substr(0, body.size() - in.rest().size());
   const std::uint32_t crc = in.U32();
   if (!in.ok() || (crc != 0 && crc != Crc32(0, covered))) return std::nullopt;
@@ -392,7 +392,7 @@ Closing CheckFooter(std::string_view file, std::string_view body, std::uint64_t 
 std::optional<FoundRecord> FirstRecord(std::string_view bytes) {
   Cursor head(bytes);
   const auto opcode = static_cast<Opcode>(head.U8());
-  const std::string_view body = head.Take(head.U64());
+  const std::string_view body = head.Bytes(head.U64());
   if (!head.ok()) return std::nullopt;
   return FoundRecord{opcode, body};
 }

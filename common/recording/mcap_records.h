@@ -210,8 +210,8 @@ class Cursor {
   std::uint32_t U32() { return static_cast<std::uint32_t>(Little(4)); }
   std::uint64_t U64() { return Little(8); }
   /// u32 length and that many bytes.
-  std::string_view Text() { return Take(U32()); }
-  std::string_view Take(std::uint64_t count);
+  std::string_view Text() { return Bytes(U32()); }
+  std::string_view Bytes(std::uint64_t count);
   TextMap Map();
   std::map<std::uint16_t, std::uint64_t> CountMap();
 

@@ -103,7 +103,7 @@ void SeekableRecording::ReadMetadata() {
     if (index.offset > file_.bytes().size()) continue;
     mcap::Cursor head(file_.bytes().substr(index.offset));
     const auto opcode = static_cast<mcap::Opcode>(head.U8());
-    const std::string_view body = head.Take(head.U64());
+    const std::string_view body = head.Bytes(head.U64());
     if (!head.ok() || opcode != mcap::Opcode::kMetadata) continue;
     bytes += body.size();
     if (bytes > kMostMetadataBytes) return;

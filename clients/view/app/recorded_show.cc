@@ -292,13 +292,13 @@ void RecordedShow::Seek(std::int64_t time_ns, const scene::StageOptions& options
   taken_to_ns_ = spans.front().first;
   stepped_to_ns_ = 0;
   newest_ns_.assign(PlayedServers().size(), recording_.first_ns());
-  TakeRetained(taken_to_ns_);
+  ApplyRetained(taken_to_ns_);
   for (const Span& span : spans) {
     const bool last = &span == &spans.back();
     taken_to_ns_ = std::max(taken_to_ns_, span.first);
     if (last) {
-      TakeRetained(taken_to_ns_);
-      TakeLastNotes(taken_to_ns_);
+      ApplyRetained(taken_to_ns_);
+      ApplyLastNotes(taken_to_ns_);
       // Falls before belong to no clip: the frames that led to them are missing.
       model().replay = {};
     }
@@ -342,7 +342,7 @@ std::vector<RecordedShow::Span> RecordedShow::SeekSpans(std::int64_t time_ns) {
   return joined;
 }
 
-void RecordedShow::TakeRetained(std::int64_t time_ns) {
+void RecordedShow::ApplyRetained(std::int64_t time_ns) {
   for (std::size_t server = 0; server < PlayedServers().size(); ++server) {
     for (const char* channel : {"status", "setup", "skeletons", "track", "game"}) {
       const auto placed = recording_.LastOf(server, channel, time_ns - 1, true);
@@ -356,7 +356,7 @@ void RecordedShow::TakeRetained(std::int64_t time_ns) {
   }
 }
 
-void RecordedShow::TakeLastNotes(std::int64_t before_ns) {
+void RecordedShow::ApplyLastNotes(std::int64_t before_ns) {
   for (const auto* times_ns : {&marks_.responses_ns, &marks_.notes_ns}) {
     const auto last_ns = LastBefore(*times_ns, before_ns - 1);
     if (!last_ns) continue;

@@ -65,8 +65,8 @@ class RecordedShow {
 
   void Seek(std::int64_t time_ns, const scene::StageOptions& options);
   std::vector<Span> SeekSpans(std::int64_t time_ns);
-  void TakeRetained(std::int64_t time_ns);
-  void TakeLastNotes(std::int64_t before_ns);
+  void ApplyRetained(std::int64_t time_ns);
+  void ApplyLastNotes(std::int64_t before_ns);
   /// Takes all ticks from where it stands to `to_ns`, and steps where `steps`.
   void PlayTo(std::int64_t to_ns, bool steps, const scene::StageOptions& options);
   void Take(const playback::PlacedTick& placed);

@@ -151,7 +151,7 @@ bool PutBack(const WorldFrame& before, const WorldFrame& after) {
 
 }  // namespace
 
-void FallReplay::TakeClip(double fall_s) {
+void FallReplay::CutClip(double fall_s) {
   // A second fall within the first one's clip belongs to it.
   if (filling_) return;
   clip_ = recent_;
@@ -167,7 +167,7 @@ void FallReplay::Push(const WorldFrame& frame) {
   const bool put_back = !recent_.empty() && PutBack(recent_.back(), frame);
   // Frames before a put-back belong to another walk.
   if (put_back) recent_.clear();
-  if (fell) TakeClip(frame.time_s);
+  if (fell) CutClip(frame.time_s);
   if (filling_ && (put_back || frame.time_s > fall_s_ + kAfterS)) {
     filling_ = false;
     ++clips_;

@@ -74,7 +74,7 @@ class FallReplay {
 
  private:
   double ClipTimeS(std::int64_t now_ns) const;
-  void TakeClip(double fall_s);
+  void CutClip(double fall_s);
 
   std::deque<WorldFrame> recent_;
   std::deque<WorldFrame> clip_;

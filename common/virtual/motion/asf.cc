@@ -29,7 +29,7 @@ class Parser {
     bool any = false;
     while (line_) {
       std::string_view rest = *line_;
-      const std::string_view section = text::TakeWord(rest);
+      const std::string_view section = text::PopWord(rest);
       if (section.empty() || section[0] != ':') return Fault("expected a section such as :root");
       Advance();
       any = true;
@@ -58,7 +58,7 @@ class Parser {
   bool InSection() const { return line_ && text::Trim(*line_)[0] != ':'; }
 
   Result<double> Number(std::string_view& line, const std::string& of) {
-    const std::string_view word = text::TakeWord(line);
+    const std::string_view word = text::PopWord(line);
     const auto number = text::ToNumber(word);
     if (number && std::abs(*number) <= kMostLength) return *number;
     return Fault("expected a number of " + of + ", found " + text::Quoted(word));
@@ -73,7 +73,7 @@ class Parser {
     return vector;
   }
   Result<std::string> AxisOrder(std::string_view& line) {
-    std::string order(text::TakeWord(line));
+    std::string order(text::PopWord(line));
     std::string sorted = order;
     std::sort(sorted.begin(), sorted.end());
     if (sorted != "XYZ")
@@ -84,14 +84,14 @@ class Parser {
   Result<void> ParseUnits() {
     for (; InSection(); Advance()) {
       std::string_view rest = *line_;
-      const std::string_view key = text::TakeWord(rest);
+      const std::string_view key = text::PopWord(rest);
       if (key == "length") {
         const auto number = Number(rest, "length");
         if (!number) return number.error();
         if (!(*number > 1e-6)) return Fault("the unit of length must be positive");
         out_.units.length = *number;
       } else if (key == "angle") {
-        const std::string_view unit = text::TakeWord(rest);
+        const std::string_view unit = text::PopWord(rest);
         if (unit != "deg" && unit != "rad") return Fault("expected angle deg or rad");
         out_.units.radians = unit == "deg" ? kPi / 180 : 1;
       }
@@ -102,10 +102,10 @@ class Parser {
   Result<void> ParseRoot() {
     for (; InSection(); Advance()) {
       std::string_view rest = *line_;
-      const std::string_view key = text::TakeWord(rest);
+      const std::string_view key = text::PopWord(rest);
       if (key == "order") {
         out_.root_order.clear();
-        for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
+        for (auto word = text::PopWord(rest); !word.empty(); word = text::PopWord(rest)) {
           out_.root_order.emplace_back(word);
         }
         auto sorted = out_.root_order;
@@ -154,7 +154,7 @@ class Parser {
 
   Result<void> ParseBoneLine(std::string_view line, Bone& bone) {
     std::string_view rest = line;
-    const std::string_view key = text::TakeWord(rest);
+    const std::string_view key = text::PopWord(rest);
     if (key == "name") {
       bone.name = std::string(text::Trim(rest));
     } else if (key == "direction") {
@@ -181,7 +181,7 @@ class Parser {
   }
 
   Result<void> ParseDofs(std::string_view rest, Bone& bone) {
-    for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
+    for (auto word = text::PopWord(rest); !word.empty(); word = text::PopWord(rest)) {
       const bool rotation = word.size() == 2 && (word[0] == 'r' || word[0] == 'R');
       const auto axis = rotation ? std::string_view("xyz").find(static_cast<char>(word[1] | 0x20))
                                  : std::string_view::npos;
@@ -207,7 +207,7 @@ class Parser {
     while (!text::Trim(rest).empty()) {
       double limits[2];
       for (int i = 0; i < 2; ++i) {
-        const std::string_view word = text::TakeWord(rest);
+        const std::string_view word = text::PopWord(rest);
         const auto number = text::ToNumber(word);
         const bool open =
             text::EqualsIgnoringCase(word, "inf") || text::EqualsIgnoringCase(word, "-inf");
@@ -225,10 +225,10 @@ class Parser {
   Result<void> ParseHierarchy() {
     for (; InSection(); Advance()) {
       std::string_view rest = *line_;
-      const std::string parent(text::TakeWord(rest));
+      const std::string parent(text::PopWord(rest));
       if (parent == "begin" || parent == "end") continue;
       if (parent != "root" && !Known(parent)) return Fault("no bone " + text::Quoted(parent));
-      for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
+      for (auto word = text::PopWord(rest); !word.empty(); word = text::PopWord(rest)) {
         const std::string child(word);
         if (!Known(child)) return Fault("no bone " + text::Quoted(child));
         if (!parents_.emplace(child, parent).second) {

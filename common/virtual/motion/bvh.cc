@@ -42,7 +42,7 @@ class HeaderTokens {
 
   std::string_view Next() {
     for (;;) {
-      const std::string_view word = text::TakeWord(line_);
+      const std::string_view word = text::PopWord(line_);
       if (!word.empty()) return word;
       const auto line = lines_.Next();
       if (!line) return {};
@@ -267,7 +267,7 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
     }
     for (std::size_t i = 0; i < columns; ++i) {
       const Channel& channel = header->channels[i];
-      const auto word = text::TakeWord(*line);
+      const auto word = text::PopWord(*line);
       const auto number = ToValue(word);
       if (!number) {
         return lines.Fault("frame " + std::to_string(frame + 1) + ": expected number " +

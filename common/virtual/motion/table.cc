@@ -81,7 +81,7 @@ Result<Table> ParseTable(std::string_view text, const std::string& file) {
   for (auto line = lines.NextFull(); line; line = lines.NextFull()) {
     if (values.size() + labels.size() > kMostValues) return lines.Fault("too many rows");
     for (const std::string& column : table.columns) {
-      const std::string_view word = text::TakeWord(*line);
+      const std::string_view word = text::PopWord(*line);
       const auto number = ToValue(word);
       if (!number) {
         return lines.Fault("column " + column + ": expected a number within +-1e9, found " +
@@ -192,7 +192,7 @@ class Frame {
 
   /// One line "BONE number ...". `q` is the frame's column.
   Result<void> Take(std::string_view line, const text::Lines& lines, Eigen::VectorXd& q) {
-    const std::string_view name = text::TakeWord(line);
+    const std::string_view name = text::PopWord(line);
     if (name == "root") {
       if (std::exchange(root_seen_, true)) return lines.Fault("a second root in one frame");
       return TakeRoot(line, lines, q);
@@ -229,7 +229,7 @@ class Frame {
  private:
   Result<double> Next(std::string_view& line, const text::Lines& lines,
                       std::string_view name) const {
-    const std::string_view word = text::TakeWord(line);
+    const std::string_view word = text::PopWord(line);
     const auto number = ToValue(word);
     if (number) return *number;
     return lines.Fault("expected a number of " + std::string(name) + " within +-1e9, found " +

@@ -283,7 +283,7 @@ bool Driver::ChooseJump(const Observation& now) {
   return true;
 }
 
-void Driver::TakeJump(Intention& wanted) const {
+void Driver::WantJump(Intention& wanted) const {
   wanted.gait = Gait::kJump;
   wanted.speed_mps = ability_.jump_mps;
   wanted.height_m = ability_.jump_height_m;
@@ -311,7 +311,7 @@ bool Driver::ChooseTask(const Observation& now, Intention& wanted) const {
       return true;
     case Gait::kJump:
       if (ability_.jumps_at_once && now.gait == Gait::kJump) return false;
-      TakeJump(wanted);
+      WantJump(wanted);
       return true;
   }
   return false;
@@ -320,7 +320,7 @@ bool Driver::ChooseTask(const Observation& now, Intention& wanted) const {
 void Driver::ChooseGait(const Observation& now, Intention& wanted) {
   if (ChooseTask(now, wanted)) return;
   if (ChooseJump(now)) {
-    TakeJump(wanted);
+    WantJump(wanted);
     return;
   }
   // Turning rate over curvature is the speed at which the curve can be followed.

@@ -110,7 +110,7 @@ class Driver {
   void ChooseGait(const Observation& now, Intention& wanted);
   bool ChooseTask(const Observation& now, Intention& wanted) const;
   bool ChooseJump(const Observation& now);
-  void TakeJump(Intention& wanted) const;
+  void WantJump(Intention& wanted) const;
   double EffortFor(const Intention& wanted, double elapsed_s);
 
   stream::Track track_;

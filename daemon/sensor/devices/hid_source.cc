@@ -321,7 +321,7 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
   void Drain() {
     awake_.Lower();
     HidSearch::Found found;
-    while (search_->Take(found)) {
+    while (search_->Pop(found)) {
       if (!found.trouble.empty()) {
         handlers_.on_trouble(found.trouble);
         continue;

@@ -103,7 +103,7 @@ class HidSearch {
   HidSearch& operator=(const HidSearch&) = delete;
 
   /// io thread.
-  bool Take(Found& found) { return found_.Pop(found); }
+  bool Pop(Found& found) { return found_.Pop(found); }
   /// As HidReader::Stuck(): it is kept by a node that it lists or opens.
   bool Stuck(std::int64_t now_ns) const {
     return heartbeat_.StuckFor(HidReader::kLongestCallNs, now_ns);

@@ -20,7 +20,7 @@ using Stored = std::optional<std::vector<std::uint8_t>>;
 /// commands to its reports. The defaults suit a device that only sends samples; a kind overrides
 /// what it has beyond that (a sphere, a camera, a calibration in feature reports, a second link).
 /// Pure: time is an argument, reports come and go as bytes. Docs:
-/// docs/devices.md#to-add-a-kind-of-device.
+/// docs/devices.md, "To add a kind of device".
 class Kind {
  public:
   virtual ~Kind() = default;
@@ -49,7 +49,7 @@ class Kind {
 
   virtual bool has_second_link() const { return false; }
   /// The device appeared on its second link.
-  virtual void TakeSecondLink() {}
+  virtual void OnSecondLink() {}
   virtual std::optional<decode::FeatureRequest> NextFeature(std::int64_t /*now_ns*/) { return {}; }
   /// A whole calibration to be stored, when this feature report completed it.
   virtual Stored TakeFeature(reports::Bytes /*feature*/) { return {}; }

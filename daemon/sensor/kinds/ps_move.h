@@ -106,7 +106,7 @@ class PsMove : public kinds::Kind {
 
   bool has_second_link() const override { return true; }
   /// Its calibration may be readable there.
-  void TakeSecondLink() override { handshake_.AskAgain(); }
+  void OnSecondLink() override { handshake_.AskAgain(); }
   std::optional<decode::FeatureRequest> NextFeature(std::int64_t now_ns) override;
   kinds::Stored TakeFeature(reports::Bytes feature) override;
 

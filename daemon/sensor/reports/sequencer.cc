@@ -21,7 +21,7 @@ void PortCheck::Request(std::int64_t now_ns) {
   wait_s_ = std::clamp(2 * wait_s_, config_.min_s, config_.max_s);
 }
 
-bool PortCheck::Take(std::int64_t now_ns) {
+bool PortCheck::BeginIfDue(std::int64_t now_ns) {
   if (!requested_ || now_ns < due_ns_) return false;
   requested_ = false;
   return true;
@@ -53,13 +53,13 @@ bool ExtensionPort::Senseless(std::int64_t now_ns) const {
   return now_ns - sense_ns_ > kSenselessNs;
 }
 
-void KeepAlive::TakeData(std::int64_t now_ns) {
+void KeepAlive::OnData(std::int64_t now_ns) {
   data_ns_ = now_ns;
   wait_s_ = config_.reassert_min_s;
 }
 
-void KeepAlive::TakeStatus(std::int64_t now_ns) {
-  if (first_due_ || !after_status_.Take(now_ns)) return;
+void KeepAlive::OnStatus(std::int64_t now_ns) {
+  if (first_due_ || !after_status_.Spend(now_ns)) return;
   first_due_ = true;
   first_ns_ = now_ns + SecondsToNanoseconds(config_.after_status_s);
   second_due_ = true;
@@ -105,7 +105,7 @@ constexpr int kChildBitPackets = 4;  // In a row: rubbish packets have the bit a
 
 }  // namespace
 
-void MotionPlus::TakeFound() {
+void MotionPlus::OnFoundActive() {
   active_ = true;
   calibration = calibration::ParseMotionPlus({});
 }
@@ -198,7 +198,7 @@ void HandshakeSequencer::EnterMode() {
 void HandshakeSequencer::Advance(std::int64_t now_ns, Outputs& outputs) {
   if (now_ns_ != 0 && now_ns - now_ns_ > kJumpNs) {
     keep_alive_.Shift(now_ns);
-    port_.TakeSense(now_ns);
+    port_.OnSense(now_ns);
   }
   now_ns_ = now_ns;
   if (live_) Watch(now_ns, outputs);
@@ -235,7 +235,7 @@ reports::OutputReport HandshakeSequencer::Output() const {
 }
 
 void HandshakeSequencer::Ask(std::int64_t now_ns, Outputs& outputs) {
-  if (!writes_.Take(now_ns)) return;
+  if (!writes_.Spend(now_ns)) return;
   question_.SetAsked(now_ns);
   if (auto request = question_.ReadRequest()) {
     outputs.push_back(std::move(*request));
@@ -383,7 +383,7 @@ void HandshakeSequencer::FinishRead(const std::vector<std::uint8_t>& bytes) {
 void HandshakeSequencer::BecomeLive() {
   Enter(Step::kLive);
   const bool first = !live_;
-  if (first) keep_alive_.TakeData(now_ns_);
+  if (first) keep_alive_.OnData(now_ns_);
   live_ = true;
   if (!port_.ready()) motion_plus_.ForgetChildBits();
   port_.BecomeReady(now_ns_);
@@ -517,7 +517,7 @@ void HandshakeSequencer::TakeIdentity(const std::vector<std::uint8_t>& bytes) {
   }
   if (IsActiveMotionPlus(found)) {
     // It stays on; the port is checked again later.
-    motion_plus_.TakeFound();
+    motion_plus_.OnFoundActive();
     port_.set_child(found == Extension::kMotionPlusNunchuk   ? Extension::kNunchuk
                     : found == Extension::kMotionPlusClassic ? Extension::kClassic
                                                              : Extension::kNotReady);
@@ -571,7 +571,7 @@ void HandshakeSequencer::StartOver() {
 void HandshakeSequencer::Watch(std::int64_t now_ns, Outputs& outputs) {
   switch (keep_alive_.Advance(now_ns)) {
     case KeepAlive::Action::kSetMode:
-      if (step() != Step::kMode && writes_.Take(now_ns)) {
+      if (step() != Step::kMode && writes_.Spend(now_ns)) {
         outputs.push_back(reports::SetMode(mode_, true));
       }
       break;
@@ -590,7 +590,7 @@ void HandshakeSequencer::WatchStatus(std::int64_t now_ns, Outputs& outputs) {
       now_ns - status_.asked_ns() >= SecondsToNanoseconds(config_.status_interval_s)) {
     RequestStatus(now_ns);
   }
-  if (status_.due() && writes_.Take(now_ns)) {
+  if (status_.due() && writes_.Spend(now_ns)) {
     status_.SetSent();
     outputs.push_back(reports::RequestStatus());
   }
@@ -598,7 +598,7 @@ void HandshakeSequencer::WatchStatus(std::int64_t now_ns, Outputs& outputs) {
 
 void HandshakeSequencer::WatchPort(std::int64_t now_ns, Outputs& outputs) {
   if (port_check_.requested()) {
-    if (port_check_.Take(now_ns)) StartOver();
+    if (port_check_.BeginIfDue(now_ns)) StartOver();
   } else if (camera_.changed) {
     camera_.changed = false;
     if (camera_.wanted) {
@@ -622,7 +622,7 @@ void HandshakeSequencer::TakeStatus(std::int64_t now_ns, const reports::Status& 
     return;
   }
   if (!live_) return;
-  keep_alive_.TakeStatus(now_ns);
+  keep_alive_.OnStatus(now_ns);
   const bool wanted = status_.TakeWanted();
   if (!plan_->remote || port_.disturbed(now_ns)) return;
   if (!status.extension && extension_found()) port_.set_unready();
@@ -636,7 +636,7 @@ void HandshakeSequencer::TakeStatus(std::int64_t now_ns, const reports::Status& 
 void HandshakeSequencer::TakeData(std::int64_t now_ns, const reports::Data& data) {
   if (step() == Step::kMode && question_.asked() && data.id == mode_) BecomeLive();
   if (!live_ || data.id != mode_) return;
-  keep_alive_.TakeData(now_ns);
+  keep_alive_.OnData(now_ns);
   if (port_.ready() && step() == Step::kLive) WatchExtension(now_ns, data);
 }
 
@@ -644,16 +644,16 @@ void HandshakeSequencer::WatchExtension(std::int64_t now_ns, const reports::Data
   const reports::Bytes bytes = data.extension();
   if (motion_plus_.active()) {
     const auto connected = reports::ChildConnected(bytes);
-    if (connected) port_.TakeSense(now_ns);
+    if (connected) port_.OnSense(now_ns);
     // A child that comes or goes shows nowhere else.
     if (connected && motion_plus_.ChildChanged(*connected, port_.has_child())) {
       port_check_.Request(now_ns);
     }
   } else if (port_.child() != Extension::kNunchuk || reports::DecodeNunchuk(bytes)) {
-    port_.TakeSense(now_ns);
+    port_.OnSense(now_ns);
   }
   if (port_.Senseless(now_ns)) {
-    port_.TakeSense(now_ns);
+    port_.OnSense(now_ns);
     motion_plus_.Suspect();
     port_check_.Request(now_ns);
   }

@@ -21,8 +21,8 @@ class Budget {
   Budget(double capacity, double rate_hz)
       : capacity_(capacity), rate_hz_(rate_hz), left_(capacity) {}
 
-  /// Takes one; false, and nothing taken, when none is left.
-  bool Take(std::int64_t now_ns) {
+  /// Spends one; false when none is left.
+  bool Spend(std::int64_t now_ns) {
     if (started_) {
       left_ = std::min(capacity_, left_ + rate_hz_ * 1e-9 * static_cast<double>(now_ns - last_ns_));
     }
@@ -68,7 +68,7 @@ class PortCheck {
   void Request(std::int64_t now_ns);
   bool requested() const { return requested_; }
   /// True once, when a requested check is due.
-  bool Take(std::int64_t now_ns);
+  bool BeginIfDue(std::int64_t now_ns);
   /// A check ended.
   void SetDone(std::int64_t now_ns) { done_ns_ = now_ns; }
 
@@ -111,7 +111,7 @@ class ExtensionPort {
   std::uint64_t changes() const { return changes_; }
 
   /// Its bytes made sense, or there were none to check.
-  void TakeSense(std::int64_t now_ns) { sense_ns_ = now_ns; }
+  void OnSense(std::int64_t now_ns) { sense_ns_ = now_ns; }
   bool Senseless(std::int64_t now_ns) const;
 
   calibration::NunchukCalibration nunchuk;
@@ -149,9 +149,9 @@ class KeepAlive {
   explicit KeepAlive(const KeepAliveConfig& config = {}) : config_(config) {}
 
   /// Data of the mode asked for arrived, or the device just became live.
-  void TakeData(std::int64_t now_ns);
+  void OnData(std::int64_t now_ns);
   /// Any status report, wanted or not.
-  void TakeStatus(std::int64_t now_ns);
+  void OnStatus(std::int64_t now_ns);
   Action Advance(std::int64_t now_ns);
   /// Time jumped, as after a suspension: silence counts from now.
   void Shift(std::int64_t now_ns) { data_ns_ = now_ns; }
@@ -185,7 +185,7 @@ class MotionPlus {
  public:
   bool active() const { return active_; }
   /// It is found switched on, as nobody asked for: used as it is, without its calibration.
-  void TakeFound();
+  void OnFoundActive();
   /// Right after an activation; true when it is to be activated again.
   bool TakeVerification(bool active, std::int64_t now_ns, int tries);
   /// The examination of the port begins again, which switches it off.

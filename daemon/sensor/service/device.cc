@@ -163,7 +163,7 @@ void Device::Restart() {
 
 void Device::AttachSecond(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
   if (links_.AttachSecond(handle, identity)) Restart();
-  kind_->TakeSecondLink();
+  kind_->OnSecondLink();
 }
 
 void Device::SetLeds(std::uint8_t leds) {

@@ -39,10 +39,10 @@ void NeutralGrip::Hang(double time_s, double rotation_rad) {
   rest_rad_ = earlier_rad_;
   earlier_rad_ = block_.sum_rad / block_.count;
   block_ = {.from_s = time_s};
-  if (!strode_) TakeRest();
+  if (!strode_) LearnFromRest();
 }
 
-void NeutralGrip::TakeRest() {
+void NeutralGrip::LearnFromRest() {
   if (!rest_rad_) return;
   neutral_rad_ = *rest_rad_;
   known_ = true;
@@ -52,7 +52,7 @@ void NeutralGrip::TakeRest() {
 void NeutralGrip::Renew() {
   strode_ = known_ = false;
   seen_s_ = 0;
-  if (hanging_) TakeRest();
+  if (hanging_) LearnFromRest();
 }
 
 void NeutralGrip::Stride(double time_s, double rotation_rad, double frequency_hz) {

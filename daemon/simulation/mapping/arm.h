@@ -31,7 +31,7 @@ class NeutralGrip {
   std::optional<double> TwistOf(double rotation_rad) const;
 
  private:
-  void TakeRest();
+  void LearnFromRest();
 
   /// Mean of readings from a time on.
   struct Block {

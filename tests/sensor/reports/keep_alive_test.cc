@@ -17,8 +17,8 @@ constexpr std::int64_t kMs = 1'000'000;
 
 TEST(KeepAlive, AStatusBringsTheModeAtOnceAndAgainWhenNoDataCame) {
   KeepAlive keep_alive;
-  keep_alive.TakeData(1000 * kMs);
-  keep_alive.TakeStatus(1000 * kMs);
+  keep_alive.OnData(1000 * kMs);
+  keep_alive.OnStatus(1000 * kMs);
   std::vector<std::int64_t> set_ms;
   for (std::int64_t ms = 1000; ms < 1190; ++ms) {
     if (keep_alive.Advance(ms * kMs) == KeepAlive::Action::kSetMode) set_ms.push_back(ms - 1000);
@@ -28,11 +28,11 @@ TEST(KeepAlive, AStatusBringsTheModeAtOnceAndAgainWhenNoDataCame) {
 
 TEST(KeepAlive, WhenDataCameTheSecondTryIsSpared) {
   KeepAlive keep_alive;
-  keep_alive.TakeData(1000 * kMs);
-  keep_alive.TakeStatus(1000 * kMs);
+  keep_alive.OnData(1000 * kMs);
+  keep_alive.OnStatus(1000 * kMs);
   int set = 0;
   for (std::int64_t ms = 1000; ms < 3000; ++ms) {
-    if (ms % 10 == 0) keep_alive.TakeData(ms * kMs);
+    if (ms % 10 == 0) keep_alive.OnData(ms * kMs);
     set += keep_alive.Advance(ms * kMs) == KeepAlive::Action::kSetMode ? 1 : 0;
   }
   EXPECT_EQ(set, 1);
@@ -40,7 +40,7 @@ TEST(KeepAlive, WhenDataCameTheSecondTryIsSpared) {
 
 TEST(KeepAlive, SilenceBringsTheModeThenTheStatus) {
   KeepAlive keep_alive;
-  keep_alive.TakeData(0);
+  keep_alive.OnData(0);
   std::vector<std::int64_t> asked_ms;
   int set = 0;
   for (std::int64_t ms = 0; ms < 12'000; ++ms) {
