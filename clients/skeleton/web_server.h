@@ -23,7 +23,7 @@ namespace footing::skeleton {
 /// Options of the server of the page with the pose model.
 struct WebOptions {
   transport::Address listen;      ///< tcp, of this host only: browsers give it their webcam.
-  std::filesystem::path package;  ///< The folder of npm's @mediapipe/pose.
+  std::filesystem::path package;  ///< The folder of npm's `@mediapipe/pose`.
   std::function<void(osc::Bytes packet)> on_packet;            ///< OSC packet of a page.
   std::function<void(const std::string& line)> on_state = {};  ///< State that a page reports.
 };
@@ -71,7 +71,7 @@ struct PageFile {
 /// "" is index.html; nullptr where there is no such file.
 const PageFile* FindPageFile(std::string_view name);
 
-/// Where scripts/fetch-pose-model puts npm's @mediapipe/pose:
+/// Where scripts/fetch-pose-model puts npm's `@mediapipe/pose`:
 /// $XDG_DATA_HOME/footing/mediapipe-pose, by default below ~/.local/share.
 std::filesystem::path DefaultPosePackage();
 
