@@ -93,7 +93,7 @@ TEST(CameraPose, RefusesTooFewMarksAndALine) {
   Observations observations = Seen(kTrue);
   Observations two = observations;
   two.marks.resize(2);
-  EXPECT_THAT(RefusalOf(two), HasSubstr("2 marks were seen: three are needed"));
+  EXPECT_THAT(RefusalOf(two), HasSubstr("2 marks"));
   Observations line = observations;
   line.marks = {observations.marks[0], observations.marks[1]};
   line.marks.push_back(line.marks[0]);
@@ -111,7 +111,7 @@ TEST(CameraPose, RefusesLengthsThatAreOff) {
   Observations observations = Seen(kTrue);
   for (SeenMark& mark : observations.marks) mark.seen.p_C_m *= 1.05;
   const std::string refusal = RefusalOf(observations);
-  EXPECT_THAT(refusal, HasSubstr("5.0 % too far from each other"));
+  EXPECT_THAT(refusal, HasSubstr("5.0 %"));
   EXPECT_THAT(refusal, HasSubstr("multiply radius_m by 0.952"));
 }
 
@@ -129,7 +129,7 @@ TEST(CameraPose, RefusesGravityThatDisagreesWithTheBoards) {
     observations.plumbs.push_back(
         {SeenAt(kTrue, low), SeenAt(kTrue, low + Vector3d(0.02, 0, 0.19)), 0});
   }
-  EXPECT_THAT(RefusalOf(observations), HasSubstr("gravity is 6.0 degrees off"));
+  EXPECT_THAT(RefusalOf(observations), HasSubstr("6.0 degrees"));
 }
 
 TEST(CameraPose, RefusesADirectionThatStaysUncertain) {
@@ -260,8 +260,7 @@ TEST(ThreePoses, CovarianceIsThatOfItsErrors) {
 }
 
 TEST(ThreePoses, RefusesShortAnglesLengthsAndMirrors) {
-  EXPECT_THAT(FromThreePoses(Seen({0.1, 0, 0}, {0, 0.4, 0})).error().message,
-              HasSubstr("ahead is only 10.0 cm"));
+  EXPECT_THAT(FromThreePoses(Seen({0.1, 0, 0}, {0, 0.4, 0})).error().message, HasSubstr("10.0 cm"));
   EXPECT_THAT(FromThreePoses(Seen({0.4, 0, 0}, {0.4, 0.2, 0})).error().message,
               HasSubstr("27 degrees apart"));
   EXPECT_THAT(FromThreePoses(Seen({0.4, 0, 0}, {0, -0.4, 0})).error().message,

