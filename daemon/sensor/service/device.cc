@@ -69,6 +69,10 @@ DeviceRole FirstFreeRole(Placement placement, const std::string& rig,
   return DeviceRole::kUnspecified;
 }
 
+bool IsOnBody(DeviceRole role) {
+  return std::find(std::begin(kBodyRoles), std::end(kBodyRoles), role) != std::end(kBodyRoles);
+}
+
 bool RoleFits(Placement placement, DeviceRole role) {
   if (role == DeviceRole::kUnspecified) return true;
   if (placement == Placement::kInBothHands) return role == DeviceRole::kEditor;

@@ -45,6 +45,9 @@ std::string ToText(const Binding& binding);
 stream::DeviceRole FirstFreeRole(decode::Placement placement, const std::string& rig,
                                  const std::vector<Binding>& taken);
 
+/// Hands, legs, head and trunk, whose devices have a mounting.
+bool IsOnBody(stream::DeviceRole role);
+
 /// A board cannot be a hand, nor a remote a board.
 bool RoleFits(decode::Placement placement, stream::DeviceRole role);
 

@@ -21,28 +21,6 @@ constexpr std::size_t kMostNameBytes = 64;
 constexpr std::size_t kMostNoteBytes = 1024;
 constexpr std::size_t kMostPrompts = 16;
 
-bool IsOnBody(DeviceRole role) {
-  switch (role) {
-    case DeviceRole::kLeftHand:
-    case DeviceRole::kRightHand:
-    case DeviceRole::kLeftLeg:
-    case DeviceRole::kRightLeg:
-    case DeviceRole::kHead:
-    case DeviceRole::kTrunk:
-      return true;
-    case DeviceRole::kUnspecified:
-    case DeviceRole::kLeftBoard:
-    case DeviceRole::kRightBoard:
-    case DeviceRole::kEditor:
-    case DeviceRole::kLeftUpperArm:
-    case DeviceRole::kRightUpperArm:
-    case DeviceRole::kLeftForearm:
-    case DeviceRole::kRightForearm:
-      return false;
-  }
-  return false;
-}
-
 bool Same(const std::optional<Eigen::Quaterniond>& a, const std::optional<Eigen::Quaterniond>& b) {
   return a.has_value() == b.has_value() && (!a || a->coeffs() == b->coeffs());
 }

@@ -47,6 +47,9 @@ TEST(Binding, ABoardIsNoHandAndAWiimoteNoBoard) {
   EXPECT_TRUE(RoleFits(Placement::kUnderFeet, DeviceRole::kRightBoard));
   EXPECT_FALSE(RoleFits(Placement::kUnderFeet, DeviceRole::kLeftHand));
   EXPECT_FALSE(RoleFits(Placement::kOnBody, DeviceRole::kLeftBoard));
+  EXPECT_TRUE(IsOnBody(DeviceRole::kTrunk));
+  EXPECT_FALSE(IsOnBody(DeviceRole::kEditor));
+  EXPECT_FALSE(IsOnBody(DeviceRole::kLeftUpperArm));
 }
 
 /// A table of Wiimotes with these serials, attached but for those that begin with "lost".
