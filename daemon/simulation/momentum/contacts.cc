@@ -18,8 +18,7 @@ constexpr std::size_t kMostBoardCells = 4;  // Insoles have more, and follow ste
 }  // namespace
 
 ContactEstimator::ContactEstimator(const Subject& subject, const TPose& pose, double step_s)
-    : subject_(subject),
-      weight_n_(pose.mass_kg * kStandardGravityMps2),
+    : weight_n_(pose.mass_kg * kStandardGravityMps2),
       step_s_(step_s),
       places_{FootPlace(subject.feet[0]), FootPlace(subject.feet[1])} {
   for (std::size_t f = 0; f < kFeet; ++f) {
@@ -88,7 +87,6 @@ void ContactEstimator::AdvanceFeet(const ContactLoads& loads) {
     foot.variance_m2 = places_[f].variance_m2();
     foot.airborne_s = contact ? 0 : contacts_[f].since_s();
     foot.at_edge_s = AtEdge(loads.feet[f]) ? foot.at_edge_s + step_s_ : 0;
-    PlaceHeelAndToe(subject_.feet[f], foot);
   }
 }
 

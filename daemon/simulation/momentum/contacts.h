@@ -47,7 +47,6 @@ class ContactEstimator {
   void WatchFlight(double total_n);
   std::array<double, kFeet> FeetForward() const;
 
-  Subject subject_;
   double weight_n_;
   double step_s_;
   std::array<FootContact, kFeet> contacts_;

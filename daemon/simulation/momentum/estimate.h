@@ -34,8 +34,6 @@ struct FootEstimate {
   bool cop_valid = false;
   Eigen::Vector3d p_WP_m = Eigen::Vector3d::Zero();  ///< Centre of pressure; 0 while not valid.
   Eigen::Vector3d p_WF_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d p_WHeel_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d p_WToe_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();  ///< Variance of p_WF, W.
   double airborne_s = 0;                                  ///< Since the foot left the cells.
   double at_edge_s = 0;  ///< Since its COP came to the edge of the cells: it may be further out.
@@ -70,8 +68,5 @@ struct Estimate {
   std::array<FootEstimate, kFeet> feet{};
   std::uint32_t resets = 0;  ///< How often the filters were reset.
 };
-
-/// Heel and toe of a foot whose reference point is there.
-void PlaceHeelAndToe(const FootShape& shape, FootEstimate& foot);
 
 }  // namespace footing::momentum

@@ -53,7 +53,6 @@ constexpr double kPaperLeastCopN = 20;
 PaperEstimator::PaperEstimator(const PaperConfig& config, const Subject& subject, const TPose& pose,
                                double step_s)
     : config_(config),
-      subject_(subject),
       pose_(pose),
       step_s_(step_s),
       vertical_(config.vertical, config.load_filter, pose.mass_kg, subject.com_height_m),
@@ -110,7 +109,6 @@ const Estimate& PaperEstimator::Advance(const ContactLoads& loads,
     foot.p_WF_m = feet_[f].position_m();
     foot.airborne_s = feet_[f].airborne_s();
     foot.variance_m2.setConstant(spread2);
-    PlaceHeelAndToe(subject_.feet[f], foot);
   }
   const Eigen::Vector3d rate =
       AngularMomentumRate(pressures, estimate_.p_WC_m, acceleration, pose_.mass_kg);

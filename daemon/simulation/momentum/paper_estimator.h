@@ -72,7 +72,6 @@ class PaperEstimator {
 
  private:
   PaperConfig config_;
-  Subject subject_;
   TPose pose_;
   double step_s_;
   PaperVertical vertical_;

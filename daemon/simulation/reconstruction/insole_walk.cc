@@ -317,7 +317,6 @@ void InsoleWalk::ReportInWorld() {
     if (!walking_) continue;
     foot.p_WF_m = frame + prior.ankle_W_m - model_->feet[f].R_WF * model_->feet[f].ankle_F_m;
     foot.variance_m2.setConstant(std::pow(std::min(prior.ankle_sd_m, prior.toe_sd_m), 2));
-    momentum::PlaceHeelAndToe(model_->feet[f].shape, foot);
   }
 }
 
