@@ -42,7 +42,6 @@ TEST(AttitudeFilter, LearnsTheBiasOfAllAxesAtRest) {
   AttitudeFilter filter;
   filter.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.5));
   Rest(filter, 20, bias);
-  EXPECT_TRUE(filter.resting());
   EXPECT_LT((filter.bias_S_radps() - bias).norm(), 5e-4);
   AttitudeFilter without({.bias_in_rest = false, .bias_in_motion = false});
   without.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.5));
@@ -56,7 +55,6 @@ TEST(AttitudeFilter, KeepsALargeBiasThatItStartsWith) {
   AttitudeFilter filter;
   filter.Start(kUp, bias, DegreesToRadians(0.1));
   Rest(filter, 20, bias + Vector3d(0, 0, 0.002));
-  EXPECT_TRUE(filter.resting());
   EXPECT_LT((filter.bias_S_radps() - bias).norm(), 0.003);
   const Eigen::Matrix3d R = filter.R_WS();
   EXPECT_LT(RadiansToDegrees(std::abs(std::atan2(R(1, 0), R(0, 0)))), 1);
