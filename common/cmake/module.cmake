@@ -1,13 +1,13 @@
 # add_module(<name> [PURE] HEADERS ... SOURCES ... [GENERATED ...] [DEPS ...] [PRIVATE_DEPS ...])
 #
 # GENERATED are files of generate_messages() (common/cmake/messages.cmake).
-# One folder = one module = one static library = one namespace. A module may name only modules
-# declared above it, so the order of add_subdirectory() in the top-level CMakeLists.txt is the
-# layering, and cycles cannot be written. DEPS also names external libraries by their short
+# One folder = one module = one static library. A module may name only modules declared above it,
+# so the order of add_subdirectory() is the layering, and cycles cannot be written. DEPS also names external libraries by their short
 # names (see common/cmake/external.cmake); a pure module may name only the pure ones.
 # A folder daemon/sensor/... never names daemon/simulation/... or the other way round, a client
-# names common and itself, never another client; daemon/offline alone may name both daemons. Synthetic people and devices (common/virtual) are
-# for clients, daemon/offline and tests: never in what footingd and footing-sim are made of.
+# names common and itself, never another client; daemon/offline alone may name both daemons.
+# Synthetic people and devices (common/virtual) are for clients, daemon/offline and tests: never in
+# what footingd and footing-sim are made of.
 define_property(TARGET PROPERTY MODULE_FOLDER)
 define_property(TARGET PROPERTY MODULE_PURE)
 
