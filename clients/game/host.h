@@ -10,7 +10,8 @@
 #include "footing/v1/command.pb.h"
 #include "footing/v1/session.pb.h"
 
-/// Conversion between the game's rules and the messages of the protocol.
+/// The terrain game as this program leads it, its report, and the conversion between the game's
+/// rules and the messages of the protocol.
 namespace footing::game {
 
 /// Takes in what a tick of footing-sim reports of trials.

@@ -11,8 +11,9 @@
 #include "common/body/landmarks.h"
 #include "common/body/skeleton.h"
 
-/// Masses and inertias of body segments: P. de Leva, "Adjustments to Zatsiorsky-Seluyanov's segment
-/// inertia parameters", J. Biomechanics 29 (1996) 1223-1230, Table 4.
+/// Skeletons with masses, and the standard person. Masses and inertias of body segments: P. de
+/// Leva, "Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomechanics 29
+/// (1996) 1223-1230, Table 4.
 namespace footing::body {
 
 enum class Sex { kFemale, kMale, kMean };

@@ -87,8 +87,8 @@ class TickQueue {
   std::uint64_t dropped_ticks_ = 0;
 };
 
-/// The answers to Hello and Subscribe, as functions of what was asked; admission.h decides who gets
-/// them.
+// The answers to Hello and Subscribe, as functions of what was asked.
+
 inline constexpr std::uint32_t kProtocolMajor = 1;
 inline constexpr std::uint32_t kProtocolMinor = 0;
 

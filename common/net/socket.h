@@ -119,9 +119,8 @@ bool StaysOnThisHost(const Address& address);
 
 /// Connects without blocking; `done` gets the socket or one line with the reason, for example
 /// "unix:/run/x.sock: no such file"; over TCP it takes 3 s at most. `done` may be dropped with the
-/// io_context. A TLS handshake is
-/// still to come (see FramedConnection); in it the server's certificate is checked against what the
-/// user trusts (see client.cc).
+/// io_context. A TLS handshake is still to come (see FramedConnection); in it the server's
+/// certificate is checked against what the user trusts (ServerTrust).
 void Dial(boost::asio::io_context& io, const Address& address,
           std::function<void(Result<Socket>)> done);
 

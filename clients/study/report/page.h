@@ -8,7 +8,7 @@
 #include "clients/study/report/analysis.h"
 #include "clients/study/report/trials.h"
 
-/// Tables of the report as HTML.
+/// The report as HTML, and its tables.
 namespace footing::study::report {
 
 /// Four significant digits, or an en dash where there is no number.

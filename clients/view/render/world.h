@@ -8,7 +8,8 @@
 #include "clients/view/scene/stage.h"
 #include "common/base/result.h"
 
-/// Shaders of the world. World frame W; light and colours are linear until the last line.
+/// The world of a picture by OpenGL, and its shaders. World frame W; light and colours are linear
+/// until the last line.
 namespace footing::render {
 
 inline constexpr int kMaxBlobs = 16;

@@ -8,7 +8,7 @@
 #include "common/virtual/devices/noise.h"
 
 /// Synthetic motion of two hands that swing a controller each, as the true specific force in the
-/// sensor frame S (x left, y front, z down; at rest face up (0, 0, -9.81) m/s²).
+/// sensor frame S (x left, y front, z down; at rest face up (0, 0, -9.81) m/s²), and its readings.
 namespace footing::wrists {
 
 /// One stretch of the script. What changes from the stretch before blends in over the first

@@ -11,7 +11,8 @@
 #include "common/stream/product_ids.h"
 #include "common/virtual/devices/extensions.h"
 
-/// The memories of a Wiimote or Balance Board, as they answer on the radio.
+/// Simulated devices that speak the Wiimote's protocol: their common part with its memory, the Pro
+/// Controller and the Balance Board.
 namespace footing::virtual_devices {
 
 /// Error nibbles of the replies.

@@ -15,9 +15,11 @@
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/table.h"
 
-/// C3D: markers, analog channels and force plates of a laboratory in one binary file (www.c3d.org),
-/// written by Intel, DEC or MIPS processors, as 16-bit integers or floats.
+/// Recorded movement: files of motion capture and of force plates, as plain values in SI.
 namespace footing::motion {
+
+// C3D: markers, analog channels and force plates of a laboratory in one binary file (www.c3d.org),
+// written by Intel, DEC or MIPS processors, as 16-bit integers or floats.
 
 /// One force plate as the file describes it.
 struct C3dPlate {
@@ -51,8 +53,6 @@ Result<std::string> WriteC3d(const C3d& c3d);
 /// three moments about the origin) and 4 (the same; its channels must be calibrated already).
 /// Others are an error that names the type.
 Result<GroundForces> ToGroundForces(const C3d& c3d, const std::string& file);
-
-// Recorded movement: files of motion capture and of force plates, as plain values in SI.
 
 /// Limits of every reader, checked before memory is taken.
 inline constexpr std::size_t kMostJoints = 1024;

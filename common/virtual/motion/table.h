@@ -12,7 +12,8 @@
 #include "common/base/text.h"
 #include "common/virtual/motion/markers.h"
 
-/// MOT and STO: OpenSim's tables of numbers over time, and the ground forces in them.
+/// MOT and STO: OpenSim's tables of numbers over time, and the ground forces in them. TRC: its
+/// tables of markers.
 namespace footing::motion {
 
 /// An OpenSim table (.mot, .sto): named columns over time.

@@ -10,7 +10,7 @@
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/engine/state.h"
 
-/// footing-tune: the gains of a gait by search over simulated trials.
+/// Simulated trials of a gait, over which footing-tune searches for its gains.
 namespace footing::tune {
 
 /// Gait and speed that a set is tuned for.

@@ -14,7 +14,7 @@
 /// | phi_W_d, phi_R_d| horizontal offset of the foothold         | m, H                  |
 /// | phi_o, k_W      | equation (1), from step time and width    | m, s                  |
 /// | T               | GaitMemory::hop, support_time_s           | s                     |
-/// | k_R             | HoppingGains::velocity_gain_s             | s                     |
+/// | -k_R            | run_, jump_velocity_gain_s (HoppingGains) | s                     |
 ///
 /// The paper writes angles of the leg; an offset divided by the leg's length is that angle.
 namespace footing::gait {

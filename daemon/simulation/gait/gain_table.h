@@ -9,7 +9,8 @@
 #include "common/stream/character.h"
 #include "daemon/simulation/gait/gain_fields.h"
 
-/// Gait tables as data: for each gait a few sets of gains, each for a speed.
+/// Tables of the gaits: for each gait a few sets of gains, each for a speed, and the states of the
+/// controllers with the arrows between them.
 namespace footing::gait {
 
 /// The gains of one gait at one speed.

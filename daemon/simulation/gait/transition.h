@@ -4,8 +4,10 @@
 
 #include "daemon/simulation/gait/controller.h"
 
-/// Running and jumping over the ground that they see: slopes, and steps up and down. Pits are
-/// not this plan's. Without seen ground every function leaves things as they are.
+/// Running and jumping over the ground that they see, and below them the changes of gait.
+///
+/// The ground is slopes, and steps up and down; pits.h has the pits. Without seen ground the
+/// functions of the ground leave things as they are.
 ///
 /// On a slope s (rise over run) a hop is the level one sheared by s: vertical speeds are those
 /// relative to the slope, v_z - s v_x, and the leg is shorter at touchdown and longer at lift-off

@@ -17,7 +17,8 @@
 #include "daemon/simulation/reconstruction/report.h"
 #include "daemon/simulation/reconstruction/subject_model.h"
 
-/// The first two steps of every mode: the T-pose, and what is estimated from the loads.
+/// The first three steps of every mode: the T-pose, what is estimated from the loads, and the
+/// targets of a frame's pose. And two of the modes: insoles, and the paper's.
 namespace footing::reconstruction {
 
 /// Measurements of one instant: hands and arms that can be used, and the momentum.

@@ -1,8 +1,8 @@
 // scenario_person DEVICE_SOCKET [--shins] [--jumbled] [--low-battery]: two boards and two remotes,
 // on the wrists or the shins, under a person who does what the lines of standard input say: those
-// of body.h, "on" (switches all devices on) and "replug" (the left remote goes away for a second).
-// Jumbled devices ask for the other side's roles, as if they had been switched on in the wrong
-// order.
+// of SetupBody::Do, "on" (switches all devices on) and "replug" (the left remote goes away for a
+// second). Jumbled devices ask for the other side's roles, as if they had been switched on in the
+// wrong order.
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>

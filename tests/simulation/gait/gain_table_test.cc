@@ -228,8 +228,8 @@ TEST(RunningMachine, HasTheArrowsOfFigure6AndTheEarlyLanding) {
                                                         {P::kExtension, P::kUpwardFlight}}));
 }
 
-// After a change of the tables: FOOTING_WRITE_FIGURES=1 tests/test_simulation_gait writes them
-// anew.
+// After a change of the tables FOOTING_WRITE_FIGURES=1 build/release/tests/test_simulation_gait
+// writes them.
 TEST(Machines, AreDrawnInTheirDocumentFromTheirTables) {
   const std::string path = FOOTING_SOURCE_DIR "/docs/gait.md";
   const auto document = config::ReadTextFile(path);
