@@ -211,7 +211,7 @@ class Calibrating {
   }
 
  private:
-  /// Ends the calibration with Late() after `within`.
+  /// Ends the calibration with Late() after `within_s`.
   void Limit(double within_s) {
     program_end_.After(within_s, [this] { End(Late()); });
   }

@@ -10,8 +10,8 @@ struct Shared {
   int exit_code = 0;
 };
 
-/// The options of the receiver, which runs where no subcommand is named. `run` is to be called
-/// after parsing then.
+/// The options of the receiver, which runs where no subcommand is named. The result is to be
+/// called after parsing then.
 std::function<void()> AddReceiver(CLI::App& app, Shared& shared);
 /// footing-skeleton send: plays a recording or a synthetic person as OSC.
 void AddSend(CLI::App& app, Shared& shared);

@@ -32,8 +32,8 @@ class StillThenSteps {
  public:
   enum class Phase { kStill, kSteps, kDone };
 
-  /// `moving` is the largest shake of all mounted devices during the last half second; not known
-  /// (no samples) counts as moving.
+  /// `moving_mps2` is the largest shake of all mounted devices during the last half second; not
+  /// known (no samples) counts as moving.
   void Advance(std::int64_t now_ns, double moving_mps2);
 
   Phase phase() const { return phase_; }

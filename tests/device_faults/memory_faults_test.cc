@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint8_t kReadReply = 0x21;
 
-/// For the first `times` read replies that `is_one` accepts, what is sent instead.
+/// For the first `times` read replies, what is sent instead.
 auto InsteadOfReplies(int times, std::function<std::vector<Report>(Report)> instead) {
   return [times, instead = std::move(instead)](const Report& report) mutable {
     if (report[0] != kReadReply || times <= 0) return std::vector<Report>{report};

@@ -91,7 +91,7 @@ Result<StandingFit> FitStanding(std::span<const Skeleton> frames, const CameraPl
 
 /// Estimates the age of an exposure by the sender's own time. A sender on this host, or with a
 /// synchronised clock, gives it at once. Of any other clock only differences mean something: the
-/// fastest packet of the last 10 to 20 s is taken to have needed `latency`, the others longer. A
+/// fastest packet of the last 10 to 20 s is taken to have needed `latency_ns`, the others longer. A
 /// plain value.
 class SenderClock {
  public:

@@ -40,7 +40,7 @@ Result<nlohmann::ordered_json> ScoreBaselines(const pose_run::PoseRun& run,
 /// difference from the same run without the outlier, whose own error is beside it).
 nlohmann::ordered_json CheckClaims(const pose_run::PoseRun& simulated);
 
-/// Share of `frames` (a column each) in runs longer than `least_run_s` in which |velocity| >
+/// Share of the frames (a column each) in runs longer than `least_run_s` in which |velocity| >
 /// `least_speed` and |acceleration| < `most_acceleration`; sizes over all rows.
 double ConstantVelocityShare(const Eigen::MatrixXd& velocity, const Eigen::MatrixXd& acceleration,
                              double rate_hz, double least_speed, double most_acceleration,

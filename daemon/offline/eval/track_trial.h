@@ -29,7 +29,7 @@ class Agreement {
   using Table = std::array<std::array<std::uint64_t, stream::kGaits.size()>, stream::kGaits.size()>;
 
   /// One moment. The command agrees when it is what the motion has meant at some time within
-  /// `delay_s`; `again` is what a command of the past may still stand for, besides.
+  /// `delay_s`, or a command of the past that still stands.
   void Add(double time_s, stream::Gait meant, stream::Gait commanded, double delay_s,
            bool still_stands);
   /// Begins again, without what was meant before.

@@ -13,8 +13,8 @@
 namespace footing::learning {
 namespace {
 
-/// Sum of sines of random phase at frequencies from `low` to `high`, amplitude falling with the
-/// square root of frequency, with its second derivative.
+/// Sum of sines of random phase at frequencies from `low_hz` to `high_hz`, amplitude falling with
+/// the square root of frequency, with its second derivative.
 class Wander {
  public:
   Wander(double sd, double low_hz, double high_hz, noise::Random& random) {

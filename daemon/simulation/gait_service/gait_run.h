@@ -43,7 +43,7 @@ class GaitRun {
   TrackExchange* tracks_;
 };
 
-/// The io side of the gait engine: features in, a walking biped out (see Service).
+/// The io side of the gait engine: features in, a walking biped out (see Serving).
 class GaitLine {
  public:
   using Run = GaitRun;

@@ -17,9 +17,9 @@ namespace footing::momentum {
 HorizontalPrior ForwardPrior();
 HorizontalPrior LateralPrior();
 
-/// How postures are wrong about the place of C along the lateral axis and upwards: `lateral` by the
-/// mean of all poses, and `height` by that or by poses that were found to go with hands and feet
-/// (docs/momentum.md).
+/// How postures are wrong about the place of C along the lateral axis and upwards
+/// (docs/momentum.md): plain ones are the mean of all poses, learned ones were found to go with
+/// hands and feet.
 PostureError PlainLateralPosture();
 PostureError PlainHeightPosture();
 PostureError LearnedHeightPosture();

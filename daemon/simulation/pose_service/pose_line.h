@@ -34,7 +34,7 @@ struct Config {
 Result<void> Check(const Config& config);
 
 /// The io side of the pose engine: board cells and hands in, a reconstructed person out (see
-/// Service).
+/// Serving).
 class PoseLine {
  public:
   using Run = PoseRun;

@@ -19,7 +19,7 @@ class Leg : public testing::Test {
   Eigen::Vector3d Place(const Eigen::VectorXd& q, Landmark landmark) const {
     return At(q).p_WJ[static_cast<std::size_t>(body_.landmarks[landmark])];
   }
-  /// The left foot's place of the T-pose, `by` further.
+  /// The left foot's place of the T-pose, `by_m` further.
   FootPlace Moved(const Eigen::Vector3d& by_m) const {
     const body::Kinematics at = At(t_pose_);
     const auto ankle = static_cast<std::size_t>(body_.landmarks[Landmark::kLeftAnkle]);
