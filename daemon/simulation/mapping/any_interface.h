@@ -92,8 +92,8 @@ class AnyInterface {
   /// Without inputs: as if every device were missing.
   biped::GaitCommand Rest(double time_s) { return Advance(time_s, {}); }
   /// For a character that is put somewhere else: a single jump that was commanded before, and that
-  /// it has not made, is not made any more; wrists,
-  /// arms and legs have to show a gait again before it goes on.
+  /// it has not made, is not made any more; wrists, arms and legs have to show a gait again before
+  /// it goes on.
   void StartAgain();
   /// A new trial: how the person holds the controllers is learned again where it is learned.
   void RenewGrip();
