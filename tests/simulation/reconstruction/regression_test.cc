@@ -177,9 +177,11 @@ TEST(Features, WithoutLoadsOnlyHandsAndFeetCount) {
   const std::array<Eigen::Vector3d, 2> hands{Eigen::Vector3d(0, 0.7, 1.4),
                                              Eigen::Vector3d(0, -0.7, 1.4)};
   Features a(1 / 60.0, 0.95, 70), b(1 / 60.0, 0.95, 70);
-  EXPECT_EQ(a.Advance(hands, WithoutLoads(light.feet, 1)), b.Advance(hands, WithoutLoads(heavy.feet, 1)));
+  EXPECT_EQ(a.Advance(hands, WithoutLoads(light.feet, 1)),
+            b.Advance(hands, WithoutLoads(heavy.feet, 1)));
   heavy.feet[1].contact = false;
-  EXPECT_NE(a.Advance(hands, WithoutLoads(light.feet, 1)), b.Advance(hands, WithoutLoads(heavy.feet, 1)));
+  EXPECT_NE(a.Advance(hands, WithoutLoads(light.feet, 1)),
+            b.Advance(hands, WithoutLoads(heavy.feet, 1)));
 }
 
 TEST(Features, AreTheSameWhereverThePersonStands) {
