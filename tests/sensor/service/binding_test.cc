@@ -55,7 +55,8 @@ TEST(Binding, ABoardIsNoHandAndAWiimoteNoBoard) {
 /// A table of Wiimotes with these serials, attached but for those that begin with "lost".
 DeviceTable Wiimotes(const std::vector<std::string>& serials) {
   DeviceTable devices;
-  const auto& own = virtual_devices::Wiimote(1).identity();
+  const virtual_devices::Wiimote made(1);
+  const auto& own = made.identity();
   devices::DeviceHandle handle = 0;
   for (const std::string& serial : serials) {
     devices::DeviceIdentity identity;
