@@ -87,7 +87,8 @@ class Run {
 
   Result<AcceptanceVerdict> Go(const std::vector<guide::Planned>& plan) {
     Keep(recorder_.OnWelcome(session_.welcome(), clock::MonotonicNs()));
-    session_.set_on_tick([this](const v1::Tick& tick) { Take(tick); });
+    session_.set_on_tick(
+        [this](const v1::Tick& tick, const rig::Tick& sensors) { Take(tick, sensors); });
     Actuators actuators;
     for (const guide::Planned& planned : plan) {
       if (!kept_) break;
@@ -115,14 +116,14 @@ class Run {
 
  private:
   /// Phases change at ticks, so that a replay changes them at the same place.
-  void Take(const v1::Tick& tick) {
+  void Take(const v1::Tick& tick, const rig::Tick& sensors) {
     Keep(recorder_.OnTick(tick, clock::MonotonicNs()));
     if (ending_) {
       acceptance_.End(tick.host_ns());
     } else if (next_) {
       acceptance_.Begin(*std::exchange(next_, std::nullopt), tick.host_ns());
     }
-    acceptance_.Take(wire::SensorTick(tick));
+    acceptance_.Take(sensors);
   }
 
   void Keep(Result<void> written) {

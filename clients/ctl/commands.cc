@@ -508,7 +508,7 @@ Result<void> Status(Connection& session, const Shared& shared) {
 
 Result<void> Watch(Connection& session, double seconds, const Shared& shared) {
   display::Live live;
-  session.set_on_tick([&](const v1::Tick& tick) {
+  session.set_on_tick([&](const v1::Tick& tick, const rig::Tick&) {
     for (const auto& sample : tick.motion().samples()) live.Take(wire::FromProto(sample));
     for (const auto& sample : tick.nunchuk().samples()) live.Take(wire::FromProto(sample));
     for (const auto& sample : tick.gamepad().samples()) live.Take(wire::FromProto(sample));
@@ -692,7 +692,7 @@ constexpr double kLeaseS = 1;  // It is released at once.
 /// The holder that the newest frame names; empty: nobody.
 Result<std::string> ReadHolder(Connection& session) {
   std::optional<std::string> holder;
-  session.set_on_tick([&](const v1::Tick& tick) {
+  session.set_on_tick([&](const v1::Tick& tick, const rig::Tick&) {
     if (tick.has_characters()) holder = tick.characters().lease_holder();
   });
   const Waited waited = session.RunUntil([&] { return holder.has_value(); }, kFrameWithinS);

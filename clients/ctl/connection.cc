@@ -7,7 +7,6 @@
 #include "clients/ctl/report/device_table.h"
 #include "common/net/address.h"
 #include "common/net/client.h"
-#include "common/rig/follower.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/service_manager.h"
 #include "common/wire/wire.h"
@@ -91,9 +90,10 @@ class Connection::Implementation {
   void OnTick(const v1::Tick& tick) {
     ++ticks_;
     server_ns_ = tick.host_ns();
-    sensors_.Take(wire::SensorTick(tick));
+    const rig::Tick sensors = wire::SensorTick(tick);
+    sensors_.Take(sensors);
     if (tick.has_stats()) stats_ = wire::FromProto(tick.stats());
-    if (on_tick_) on_tick_(tick);
+    if (on_tick_) on_tick_(tick, sensors);
   }
 
   transport::ClientOptions dialled_;
@@ -103,7 +103,7 @@ class Connection::Implementation {
   v1::Welcome welcome_;
   rig::Follower sensors_;
   std::optional<stream::ServerStats> stats_;
-  std::function<void(const v1::Tick&)> on_tick_;
+  Connection::OnTick on_tick_;
   std::string link_ = "not connected";
   std::string notice_;
   std::uint64_t ticks_ = 0;
@@ -137,11 +137,8 @@ std::int64_t Connection::server_ns() const { return implementation_->server_ns_;
 bool Connection::live() const { return implementation_->live_; }
 const std::string& Connection::link() const { return implementation_->link_; }
 std::string Connection::TakeNotice() { return std::exchange(implementation_->notice_, {}); }
-bool Connection::interrupted() const { return implementation_->end_.asked(); }
 
-void Connection::set_on_tick(std::function<void(const v1::Tick&)> on_tick) {
-  implementation_->on_tick_ = std::move(on_tick);
-}
+void Connection::set_on_tick(OnTick on_tick) { implementation_->on_tick_ = std::move(on_tick); }
 
 Result<v1::CommandResult> Connection::Call(v1::Command command, double within_s) {
   return implementation_->Call(std::move(command), within_s);

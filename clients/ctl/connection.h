@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "common/net/address.h"
+#include "common/rig/follower.h"
 #include "common/runtime/timer.h"
 #include "common/stream/device.h"
 #include "common/stream/server_stats.h"
@@ -58,8 +59,10 @@ class Connection {
   /// Server's notice since the last call on a cause that slows it or this session; empty: none.
   std::string TakeNotice();
 
-  /// Called for every tick while a call waits; the tick holds the channels asked for.
-  void set_on_tick(std::function<void(const v1::Tick&)> on_tick);
+  /// A tick of the channels asked for, and the same as a follower of rigs reads it.
+  using OnTick = std::function<void(const v1::Tick& tick, const rig::Tick& sensors)>;
+  /// Called for every tick while a call waits.
+  void set_on_tick(OnTick on_tick);
 
   /// Sends a command and waits for the answer. A refusal is an error with footingd's message.
   Result<v1::CommandResult> Call(v1::Command command, double within_s = 3);
@@ -67,7 +70,6 @@ class Connection {
   /// Handles ticks for that time. `condition` is asked after every tick.
   Waited RunFor(double duration_s);
   Waited RunUntil(const std::function<bool()>& condition, double within_s);
-  bool interrupted() const;
 
   /// The device of a serial, a number within the epoch, or RIG/ROLE or ROLE ("left_hand").
   /// NoDevice with a list of what there is otherwise.

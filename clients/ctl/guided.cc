@@ -210,7 +210,7 @@ Result<std::vector<stream::SetupItem>> RunGuided(Connection& session,
   guide::SetUp set_up(options, items);
   guide::Recent recent;
   recent.SetDevices(session.status());
-  session.set_on_tick([&](const v1::Tick& tick) { recent.Take(wire::SensorTick(tick)); });
+  session.set_on_tick([&](const v1::Tick&, const rig::Tick& sensors) { recent.Take(sensors); });
   PromptPrinter printer(prompts);
   PublishedPrompts published(session, options.rig);
   std::vector<stream::SetupItem> found;

@@ -234,7 +234,7 @@ void Publisher::OnAsked(const nats::Message& message) {
   v1::Envelope question;
   const bool parsed =
       question.ParseFromArray(message.payload.data(), static_cast<int>(message.payload.size()));
-  if (source == nullptr || message.reply.empty() || !parsed || !answers_.Take(arrived_ns)) return;
+  if (source == nullptr || message.reply.empty() || !parsed || !answers_.Spend(arrived_ns)) return;
   const std::string reply(message.reply);
   const auto server_ns = source->ServerNs();
   if (!server_ns) return;  // It has nothing to say of a server that is not there.

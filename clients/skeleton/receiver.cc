@@ -130,7 +130,7 @@ class Receiver {
   }
 
   bool Allow(std::int64_t now_ns) {
-    if (bucket_.Take(now_ns)) return true;
+    if (bucket_.Spend(now_ns)) return true;
     if (dropped_++ == 0 || now_ns - dropped_line_ns_ > kQuietNs) {
       log::Warning("too many packets: " + std::to_string(dropped_) + " dropped so far");
       dropped_line_ns_ = now_ns;

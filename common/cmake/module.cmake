@@ -2,8 +2,9 @@
 #
 # GENERATED are files of generate_messages() (common/cmake/messages.cmake).
 # One folder = one module = one static library. A module may name only modules declared above it,
-# so the order of add_subdirectory() is the layering, and cycles cannot be written. DEPS also names external libraries by their short
-# names (see common/cmake/external.cmake); a pure module may name only the pure ones.
+# so the order of add_subdirectory() is the layering, and cycles cannot be written. DEPS also names
+# external libraries by their short names (see common/cmake/external.cmake); a pure module may name
+# only the pure ones.
 # A folder daemon/sensor/... never names daemon/simulation/... or the other way round, a client
 # names common and itself, never another client; daemon/offline alone may name both daemons.
 # Synthetic people and devices (common/virtual) are for clients, daemon/offline and tests: never in

@@ -251,7 +251,7 @@ TokenGuard::Verdict TokenGuard::Check(std::string_view presented, const std::str
   const bool view = IsSameSecret(presented, view_token_) && !view_token_.empty();
   if (control) return {v1::ROLE_CONTROL};
   if (view) return {v1::ROLE_VIEW};
-  return {v1::ROLE_UNSPECIFIED, !TriesOf(host, now_ns).Take(now_ns)};
+  return {v1::ROLE_UNSPECIFIED, !TriesOf(host, now_ns).Spend(now_ns)};
 }
 
 }  // namespace footing::transport

@@ -28,8 +28,8 @@ class TokenBucket {
   /// Whether at least one token is there.
   bool HasOne(std::int64_t now_ns) { return !limits() || Level(now_ns) >= 1; }
 
-  /// Takes one token if it is there.
-  bool Take(std::int64_t now_ns) {
+  /// Spends one token if it is there.
+  bool Spend(std::int64_t now_ns) {
     if (!HasOne(now_ns)) return false;
     Charge(1);
     return true;

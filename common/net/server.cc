@@ -98,7 +98,7 @@ class Server::Implementation {
   void NoteLateTicks(std::uint64_t count) {
     shared_.statistics.late_ticks += count;
     shared_.publication.LeaveOut(count);
-    if (!late_lines_.Take(shared_.NowNs())) return;
+    if (!late_lines_.Spend(shared_.NowNs())) return;
     const std::uint64_t all = shared_.statistics.late_ticks;
     const std::string line =
         shared_.options.server_id + " is overloaded: " + std::to_string(all) +
@@ -177,7 +177,7 @@ class Server::Implementation {
       return one.field == shared_.publication.left_out_field();
     });
     if (channel == channels.end() || !shared_.handlers.on_overload) return;
-    if (!left_out_lines_.Take(shared_.NowNs())) return;
+    if (!left_out_lines_.Spend(shared_.NowNs())) return;
     shared_.handlers.on_overload(
         {"channel " + channel->name + " was left out of a tick, which has at most " +
              std::to_string(shared_.options.max_message_out_bytes) + " bytes (" +

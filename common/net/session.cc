@@ -371,27 +371,27 @@ std::int64_t Shared::NowNs() const {
 }
 
 void Shared::SayOverload(const OverloadLine& line) {
-  if (handlers.on_overload && overload_lines.Take(NowNs())) handlers.on_overload(line);
+  if (handlers.on_overload && overload_lines.Spend(NowNs())) handlers.on_overload(line);
 }
 
 void Shared::SayDenied(const std::string& host, Lack lack, const std::string& why) {
   ++statistics.denied;
   TokenBucket& lines = denied_lines.try_emplace(lack, 0.1, 1).first->second;
-  if (!handlers.on_overload || !lines.Take(NowNs())) return;
+  if (!handlers.on_overload || !lines.Spend(NowNs())) return;
   handlers.on_overload({"refused a client from " + host + ": " + why + " (" +
                         std::to_string(statistics.denied) + " since start)"});
 }
 
 void Shared::SayRefused(v1::Refused::Reason reason, const Peer& peer, const std::string& why) {
   TokenBucket& lines = refused_lines.try_emplace(reason, 0.1, 1).first->second;
-  if (!handlers.on_overload || !lines.Take(NowNs())) return;
+  if (!handlers.on_overload || !lines.Spend(NowNs())) return;
   const std::string who = peer.known ? "of user " + std::to_string(peer.user) : "from " + peer.host;
   handlers.on_overload({"refused a client " + who + ": " + why + " (" +
                         std::to_string(statistics.refused) + " since start)"});
 }
 
 void Session::SayEnded(const std::string& why) {
-  if (!shared_.handlers.on_overload || !shared_.ended_lines.Take(shared_.NowNs())) return;
+  if (!shared_.handlers.on_overload || !shared_.ended_lines.Spend(shared_.NowNs())) return;
   shared_.handlers.on_overload(
       {"session " + std::to_string(info_.session) + " (" + info_.client_name + ") is ended: " + why,
        info_.session});
@@ -406,7 +406,7 @@ void Session::OnSlowed(double wait_s) {
                            std::to_string(static_cast<int>(messages_per_s_)) +
                            " messages a second and is slowed",
                        info_.session});
-  if (!welcomed() || !slowed_notices_.Take(shared_.NowNs())) return;
+  if (!welcomed() || !slowed_notices_.Spend(shared_.NowNs())) return;
   Notify(v1::Notice::KIND_SLOWED,
          "this client exceeds the server's rate limit; its messages are delayed", record_.slowed);
 }

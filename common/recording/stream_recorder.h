@@ -40,7 +40,7 @@ class StreamRecorder {
   std::uint64_t missing_ticks() const { return missing_ticks_; }
   /// Time of the newest tick, on the server's clock; 0: none.
   std::int64_t last_host_ns() const { return last_host_ns_; }
-  /// Notice of what slows the server or this session, in the server's words, and how often it came.
+  /// Notice of what slows the server or this session, in the server's words.
   const std::string& notice() const { return notice_; }
   /// The last state of the link, for a person.
   const std::string& link() const { return link_; }

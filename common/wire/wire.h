@@ -8,13 +8,6 @@
 #include "common/stream/user_interface.h"
 #include "common/wire/messages.h"
 
-/// Between the plain structs of common/stream and the messages of the protocol: ToProto and
-/// FromProto. Enums have the same numbers on both sides; an unknown number becomes kUnspecified. A
-/// number that is not finite becomes 0 on the way out, so nothing published is ever NaN, and on the
-/// way in, where a server may not be ours; a rotation becomes the identity. Text is made valid
-/// UTF-8. HandFrame, ReferenceFrame and ContactFrame come in as they are, with what is not finite:
-/// footingd checks and refuses them. messages.h has the pairs that are 1:1 by proto/structs.toml;
-/// the rest stands here.
 namespace footing::rig {
 struct Tick;
 }  // namespace footing::rig
@@ -22,6 +15,13 @@ namespace footing::v1 {
 class Tick;
 }  // namespace footing::v1
 
+/// Between the plain structs of common/stream and the messages of the protocol: ToProto and
+/// FromProto. Enums have the same numbers on both sides; an unknown number becomes kUnspecified. A
+/// number that is not finite becomes 0 on the way out, so nothing published is ever NaN, and on the
+/// way in, where a server may not be ours; a rotation becomes the identity. Text is made valid
+/// UTF-8. HandFrame, ReferenceFrame and ContactFrame come in as they are, with what is not finite:
+/// footingd checks and refuses them. messages.h has the pairs that are 1:1 by proto/structs.toml;
+/// the rest stands here.
 namespace footing::wire {
 
 void Write(const Eigen::Vector3d& value, v1::Vector3& message);

@@ -46,7 +46,6 @@ class Decoder {
   void Flush(std::int64_t now_ns, std::vector<Decoded>& complete);
 
   const DecoderCounts& counts() const { return counts_; }
-  /// Text on the last message of no known dialect.
   /// The first problem of each kind since the last call.
   std::vector<std::string> TakeProblems();
   /// Why the bones of a VMC sender make no skeleton now; empty while they do.

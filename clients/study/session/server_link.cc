@@ -56,10 +56,9 @@ void HeldLease::Ask() {
 }
 
 void HeldLease::AskLater() {
-  timer_.expires_after(kAskAgain);
-  timer_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-    const auto self = weak.lock();
-    if (!error && self && self->connected_) self->Ask();
+  timer_.After(kAskAgain, [this] {
+    const auto self = shared_from_this();  // A handler may let the lease go.
+    if (connected_) Ask();
   });
 }
 

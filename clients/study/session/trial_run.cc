@@ -516,9 +516,7 @@ void TrialRecorder::Keep(Result<void> written) {
 }
 
 void TrialRecorder::FlushLater() {
-  flush_.expires_after(kFlushPeriod);
-  flush_.async_wait([this](const boost::system::error_code& error) {
-    if (error) return;
+  flush_.After(kFlushPeriod, [this] {
     if (writer_.pending() && written_) Keep(writer_.Flush());
     FlushLater();
   });

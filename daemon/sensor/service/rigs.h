@@ -31,8 +31,8 @@ class DeviceTable {
   /// An error when it is not there or lost.
   Result<Device*> Attached(std::uint32_t number) const;
   Result<Device*> Attached(const std::string& serial) const;
-  /// A new device; null when there is no place for it. `drop` is called with a simulated device
-  /// that gives its place, and why.
+  /// A new device; null when all places are taken. `drop` is called with a simulated device that
+  /// gives its place, and why.
   Device* Add(bool simulated, const DeviceOptions& options, const Drop& drop);
 
   std::set<std::string> RigsWithBoards() const;

@@ -62,7 +62,7 @@ class LimitedLog {
   explicit LimitedLog(std::function<void(const LogLine&)> say) : say_(std::move(say)) {}
 
   void Say(LogLine line, std::int64_t now_ns) {
-    if (!bucket_.Take(now_ns)) {
+    if (!bucket_.Spend(now_ns)) {
       ++left_out_;
       return;
     }

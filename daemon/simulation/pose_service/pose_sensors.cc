@@ -342,13 +342,12 @@ void PoseSensors::TakeHand(const stream::HandSample& sample, double age_s, std::
 
 bool PoseSensors::FollowsJointsOf(const std::string& tracker, std::int64_t now_ns) {
   if (tracker != joint_tracker_) {
-    if (joint_tracker_ns_ != 0 && NanosecondsToSeconds(now_ns - joint_tracker_ns_) <= kHandTimeoutS)
-      return false;
+    if (joint_tracker_heard_.IsLive(now_ns, kHandTimeoutS)) return false;
     joint_tracker_ = tracker;
     joints_ = {};
     joint_tracks_ = reconstruction::JointTracks();
   }
-  joint_tracker_ns_ = now_ns;
+  joint_tracker_heard_ = {true, now_ns, false};
   return true;
 }
 
@@ -408,7 +407,7 @@ void PoseSensors::ReportHands(std::int64_t now_ns, std::int64_t host_ns) {
     reconstruction::HandInput& hand = inputs_.sensors.hands[side];
     if (fused.hand.valid) hand = fused.hand;
     hand.valid = fused.hand.valid;
-    hand.of_skeleton = joint_tracker_ns_ != 0 && fused.trackers == std::set{joint_tracker_};
+    hand.of_skeleton = joint_tracker_heard_.ever && fused.trackers == std::set{joint_tracker_};
     inputs_.simulated |= fused.simulated;
     trackers.insert(fused.trackers.begin(), fused.trackers.end());
   }

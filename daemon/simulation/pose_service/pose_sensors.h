@@ -186,7 +186,7 @@ class PoseSensors {
       reconstruction::JointTracks();
   std::string tracker_;
   std::string joint_tracker_;  ///< Tracker whose joints are followed.
-  std::int64_t joint_tracker_ns_ = 0;
+  rig::LastHeard joint_tracker_heard_;
   std::string board_problem_;
   PoseArms arms_;
   PoseInputs inputs_;

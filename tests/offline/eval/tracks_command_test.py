@@ -71,6 +71,12 @@ for words in (("mirrored", 45), ("same", 45), ("same", -45)):
     assert grip["completed"] == 1 and (grip["grip_way"], grip["grip_deg"]) == words, grip
     assert grip["failures"] == dict.fromkeys(CAUSES, 0) and grip["gait_agreement"] > 0.9, grip
 
+# A grip that a run has shown holds in the walk after it.
+running = report("--interface", "arm", "--track", "curves", "--seed", 21, "--start", "run", "--grip-way", "same",
+                 "--grip-deg", 40)
+assert running["start"] == "run" and running["completed"] == 1, running
+assert running["failures"] == dict.fromkeys(CAUSES, 0) and running["gait_agreement"] > 0.9, running
+
 # What turns with the interface leg can be chosen; a trace shows every look at the picture.
 with tempfile.TemporaryDirectory() as folder:
     trace = pathlib.Path(folder, "trace.csv")
