@@ -283,8 +283,9 @@ ordered_json AnonymousConfig(const std::string& json) {
   ordered_json kept = Only(config, {"program", "version", "engine", "step_s", "sha256"});
   if (config.contains("settings")) {
     kept["settings"] =
-        Only(config["settings"], {"turn_by", "camera_roll", "boards_may_be_left", "frame_rate_hz",
-                                  "features_timeout_s", "fall_shown_s", "put_back_distance_m"});
+        Only(config["settings"],
+             {"gaits", "turn_by", "camera_roll", "boards_may_be_left", "frame_rate_hz",
+              "features_timeout_s", "fall_shown_s", "put_back_distance_m"});
   }
   if (!config.contains("interface")) return kept;
   const ordered_json& interface = config["interface"];

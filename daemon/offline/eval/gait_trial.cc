@@ -33,14 +33,23 @@ std::vector<std::string>& MoreGains() {
   return paths;
 }
 
+std::string& Gaits() {
+  static std::string gaits = "best";
+  return gaits;
+}
+
 Result<engine::EngineTexts> ReadTexts(
     stream::UserInterface interface = stream::UserInterface::kWrist,
     const std::string& mapping_table = "") {
-  return engine_files::ReadTexts(
-      {.interface = interface, .mapping_table = mapping_table, .more_gains = MoreGains()});
+  return engine_files::ReadTexts({.interface = interface,
+                                  .mapping_table = mapping_table,
+                                  .gaits = Gaits(),
+                                  .more_gains = MoreGains()});
 }
 
 }  // namespace
+
+void UseGaits(const std::string& gaits) { Gaits() = gaits; }
 
 void ReadGainsToo(std::vector<std::string> paths) { MoreGains() = std::move(paths); }
 

@@ -34,6 +34,8 @@ std::uint64_t TrialSeed(std::uint64_t seed, int trial);
 /// "random" or a number; a random one is drawn from the system and printed to standard error.
 Result<std::uint64_t> ParseSeed(const std::string& text);
 
+/// Controllers of every engine made after this: best or paper. The command line's, as below.
+void UseGaits(const std::string& gaits);
 /// Gait tables (gain_table.h) that every engine made after this reads after the product's own. The
 /// command line's, said once for the whole process.
 void ReadGainsToo(std::vector<std::string> paths);

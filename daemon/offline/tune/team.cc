@@ -238,10 +238,26 @@ const std::vector<Row> kJumping{{"attitude.jump_yaw_stiffness_nm_per_rad", kCoef
                                 {"hopping.jump_velocity_gain_s", 0.15},
                                 {"attitude.jump_lean_rad_per_mps", 0.03, false},
                                 {"recovery.spread_mps", kCoefficient}};
+/// Tuned by the paper: springs and dampers, the constants of equation (1), and the landing length;
+/// besides, lengths that its text leaves open.
+const std::vector<Row> kPaperOnTheGround{
+    {"walking.leg_stiffness_n_per_m", kCoefficient}, {"walking.leg_damping_ns_per_m", kCoefficient},
+    {"paper.walk_offset_rad", 0.02, false},          {"paper.walk_offset_side_rad", 0.01, false},
+    {"paper.walk_gain_rad_per_mps", 0.15},           {"paper.walk_side_gain_rad_per_mps", 0.15},
+    {"paper.touchdown_length_m", kLength},           {"paper.swing_length_m", kLength},
+    {"paper.fall_extension_m", 0.005, false},        {"paper.rear_extension_m", 0.005, false}};
+const std::vector<Row> kPaperRunning{{"hopping.run_leg_stiffness_n_per_m", kCoefficient},
+                                     {"hopping.run_leg_damping_ns_per_m", kCoefficient},
+                                     {"hopping.run_velocity_gain_s", 0.15},
+                                     {"paper.run_extension_m", 0.005, false}};
+const std::vector<Row> kPaperJumping{{"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
+                                     {"hopping.jump_leg_damping_ns_per_m", kCoefficient},
+                                     {"hopping.jump_velocity_gain_s", 0.15},
+                                     {"paper.jump_extension_share", 0.01, false}};
 
 }  // namespace
 
-std::vector<Dimension> DimensionsOf(Gait gait) {
+std::vector<Dimension> DimensionsOf(Gait gait, bool paper) {
   std::vector<Dimension> dimensions;
   const auto add = [&dimensions](const std::vector<Row>& rows) {
     for (const Row& row : rows) {
@@ -254,16 +270,16 @@ std::vector<Dimension> DimensionsOf(Gait gait) {
   switch (gait) {
     case Gait::kRun:
       add(kInHops);
-      add(kRunning);
+      add(paper ? kPaperRunning : kRunning);
       break;
     case Gait::kJump:
       add(kInHops);
-      add(kJumping);
+      add(paper ? kPaperJumping : kJumping);
       break;
     case Gait::kStep:
     case Gait::kWalk:
     case Gait::kUnspecified:
-      add(kOnTheGround);
+      add(paper ? kPaperOnTheGround : kOnTheGround);
       break;
   }
   return dimensions;

@@ -89,8 +89,8 @@ struct Dimension {
 };
 
 /// Parameters that the paper tunes: the servos' spring and damper coefficients, the constants of
-/// equations (1) and (2), and the landing length.
-std::vector<Dimension> DimensionsOf(stream::Gait gait);
+/// equations (1) and (2), and the landing length. `paper`: of the paper's own laws.
+std::vector<Dimension> DimensionsOf(stream::Gait gait, bool paper = false);
 
 /// The gains at a point, 0 being `start`; kept within what a table may say.
 gait::Gains GainsAt(const gait::Gains& start, const std::vector<Dimension>& dimensions,

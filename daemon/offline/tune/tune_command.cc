@@ -46,7 +46,7 @@ class Tuning {
         gait_(stream::GaitNamed(options.gait)),
         team_(std::move(team)),
         table_(std::move(table)),
-        dimensions_(DimensionsOf(gait_)) {}
+        dimensions_(DimensionsOf(gait_, table_.At(gait_, 0).paper.laws > 0.5)) {}
 
   Result<void> Resume() {
     searches_.assign(options_.speeds_mps.size(),

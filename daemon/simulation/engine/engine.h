@@ -38,6 +38,8 @@ inline constexpr const char* kBipedFile = "biped.json";
 inline constexpr const char* kPlainTrackFile = "tracks/plain.json";
 inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
                                        "gaits/jump.csv"};
+/// After those, the gaits as the gait paper prints them.
+inline constexpr const char* kPaperGainFile = "gaits/paper.csv";
 static_assert(kGainFiles.size() == stream::kGaits.size(), "a table of gains for every gait");
 
 /// Settings of the engine.

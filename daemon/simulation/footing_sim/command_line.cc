@@ -58,6 +58,7 @@ cli::ServerProgram Program() {
       "person on boards.",
       "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n"
       "  footing-sim --interface leg --set turn_by=trunk\n"
+      "  footing-sim --gaits paper\n"
       "  footing-sim --engine pose --lag-ms 100\n",
       {{"--engine", "engine", "Engine: gait or pose (default: gait)"},
        {"--sensor", "sensor", "Address of footingd"},
@@ -67,6 +68,8 @@ cli::ServerProgram Program() {
        {"--track", "track",
         "Track of the gait engine: straight, 1 to 4 or another built-in name, or a JSON file "
         "(default: endless)"},
+       {"--gaits", "gaits",
+        "Controllers of the gaits: best, or paper for those of the gait paper (default: best)"},
        {"--subject", "subject", "Subject file of the pose engine, JSON"},
        {"--mode", "mode", "Reconstruction mode of the pose engine: best or paper (default: best)"},
        {"--metrics", "metrics",

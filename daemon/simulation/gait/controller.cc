@@ -9,6 +9,7 @@
 #include "common/base/units.h"
 #include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/paper.h"
 #include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/gait/targets.h"
 #include "daemon/simulation/gait/transition.h"
@@ -47,6 +48,9 @@ physics::JointEfforts Advance(const biped::BodyState& body, const biped::BipedPa
   const biped::GaitCommand goal = Goal(memory, command, gains.transition, speed_mps);
   const Context context{body, biped, gains, goal, seen_ground, step_s};
   SlewSpeed(context, memory);
+  if (gains.paper.laws > 0.5) {
+    return Servo(AdvancePaper(context, memory), body, biped, gains, step_s, memory);
+  }
   Targets targets = AdvanceMachines(context, memory);
   targets.lean_rad += AnticipatedLean(context, memory);
   KeepLegsApart(context, memory, targets);

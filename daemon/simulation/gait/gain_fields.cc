@@ -162,6 +162,27 @@ constexpr std::array kFields{
     GAIN(anticipation, lean_rad_per_mps, "rad s/m", 0, 1),
     GAIN(anticipation, lean_limit_rad, "rad", 0, 1),
     GAIN(anticipation, crouch_m, "m", 0, 0.3),
+
+    GAIN(paper, laws, "1", 0, 1),
+    GAIN(paper, touchdown_length_m, "m", 0.6, 1.1),
+    GAIN(paper, swing_length_m, "m", 0.55, 1.1),
+    GAIN(paper, fall_extension_m, "m", -0.1, 0.2),
+    GAIN(paper, rear_extension_m, "m", -0.1, 0.2),
+    GAIN(paper, extension_mps, "m/s", 0, 5),
+    GAIN(paper, walk_offset_rad, "rad", -1, 1),
+    GAIN(paper, walk_offset_side_rad, "rad", -1, 1),
+    GAIN(paper, walk_gain_rad_per_mps, "rad s/m", -2, 0),
+    GAIN(paper, walk_side_gain_rad_per_mps, "rad s/m", -2, 0),
+    GAIN(paper, pick_up_s, "s", 0.01, 2),
+    GAIN(paper, rise_passed_m, "m", -0.5, 0.5),
+    GAIN(paper, rise_height_m, "m", 0, 0.3),
+    GAIN(paper, rise_sideways_mps, "m/s", -1, 1),
+    GAIN(paper, run_extension_m, "m", 0, 0.2),
+    GAIN(paper, jump_extension_share, "m^0.5", 0, 1),
+    GAIN(paper, leap_extension_m, "m", 0, 0.2),
+    GAIN(paper, leaving_extension_m, "m", 0, 0.2),
+    GAIN(paper, landing_extension_m, "m", -0.2, 0.2),
+    GAIN(paper, landing_shortening_m, "m", -0.2, 0.2),
 };
 
 #undef GAIN

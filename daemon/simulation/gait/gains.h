@@ -186,6 +186,32 @@ struct AnticipationGains {
   double crouch_m = 0.03;
 };
 
+/// The gaits as the paper prints them (paper.h). Nothing here acts while `laws` is 0.
+struct PaperGains {
+  double laws = 0;  ///< 1: the paper's machines and laws in place of ours.
+  // Walking and stepping.
+  double touchdown_length_m = 0.93;
+  double swing_length_m = 0.82;
+  double fall_extension_m = 0.02;
+  double rear_extension_m = 0.04;
+  double extension_mps = 0.3;
+  double walk_offset_rad = 0;                 ///< phi_o of equation (1), in pitch, ...
+  double walk_offset_side_rad = -0.058;       ///< ... and in roll, outwards.
+  double walk_gain_rad_per_mps = -0.31;       ///< k_W in pitch, ...
+  double walk_side_gain_rad_per_mps = -0.31;  ///< ... and in roll.
+  double pick_up_s = 0.1;                     ///< Double Support lasts no longer.
+  double rise_passed_m = 0;       ///< Walking: Rise ends when the foot is so far ahead, ...
+  double rise_height_m = 0.03;    ///< ... stepping: when it is so high; ...
+  double rise_sideways_mps = -1;  ///< ... and the hip goes towards its side at this speed.
+  // Running and jumping.
+  double run_extension_m = 0.045;      ///< Beyond the touchdown length, in Extension.
+  double jump_extension_share = 0.06;  ///< The same for each root of a metre of height.
+  double leap_extension_m = 0.06;      ///< The same in the step of a run that becomes a jump.
+  double leaving_extension_m = 0.02;   ///< The same in a run that is to end.
+  double landing_extension_m = 0.02;   ///< Beyond it in the Compression that ends a run.
+  double landing_shortening_m = 0.06;  ///< Short of it in the one that ends a jump.
+};
+
 /// All gains of one gait at one speed.
 struct Gains {
   ServoGains servo;
@@ -199,6 +225,7 @@ struct Gains {
   RecoveryGains recovery;
   CadenceGains cadence;
   AnticipationGains anticipation;
+  PaperGains paper;
 };
 
 }  // namespace footing::gait

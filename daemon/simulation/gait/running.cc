@@ -111,8 +111,21 @@ void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
   loss_j = std::clamp(loss_j + 0.5 * missing_j, -60.0, 60.0);
 }
 
-/// Counts steps that look like lift-off: the leg at its rest length (a light foot may well stay on
-/// the ground then) or off the ground.
+/// Whether one of a jump's legs has left the ground since both have pushed in this Extension.
+void NoteLegThatLeft(const Context& context, GaitMemory& memory) {
+  HopSupport& hop = memory.hop;
+  for (std::size_t leg = 0; leg < 2; ++leg) {
+    const bool touches = context.body.legs[leg].touching;
+    hop.pushed[leg] = hop.pushed[leg] || touches;
+    hop.leg_off_steps[leg] = touches ? 0 : hop.leg_off_steps[leg] + 1;
+  }
+  const int longest = std::max(hop.leg_off_steps[0], hop.leg_off_steps[1]);
+  hop.leg_left = hop.pushed[0] && hop.pushed[1] && context.TimeIn(memory) > kShortestExtensionS &&
+                 longest >= kLiftOffSteps;
+}
+
+}  // namespace
+
 void WatchExtension(const Context& context, GaitMemory& memory) {
   const VirtualLeg leg = StanceLeg(context, memory);
   const double time_s = context.TimeIn(memory);
@@ -123,6 +136,18 @@ void WatchExtension(const Context& context, GaitMemory& memory) {
                  context.gains.hopping.touchdown_length_m + 0.2);
   }
   memory.hop.off_steps = off && time_s > kShortestExtensionS ? memory.hop.off_steps + 1 : 0;
+  NoteLegThatLeft(context, memory);
+}
+
+void BeginExtension(HopSupport& hop) {
+  hop.off_steps = 0;
+  hop.pushed = {};
+  hop.leg_left = false;
+  hop.leg_off_steps = {};
+}
+
+bool OneLegLeft(const GaitMemory& memory) {
+  return memory.running == RunningPhase::kExtension && memory.hop.leg_left;
 }
 
 bool LandingDone(const Context& context, const GaitMemory& memory) {
@@ -131,6 +156,8 @@ bool LandingDone(const Context& context, const GaitMemory& memory) {
          context.TimeIn(memory) > shortest_s &&
          StanceLeg(context, memory).rate_mps > kLandedRateMps;
 }
+
+namespace {
 
 void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
   switch (phase) {
@@ -147,7 +174,7 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
       memory.hop.thrust_length_m = ThrustLength(context, memory);
       memory.pit.last_hop.extension_m =
           memory.hop.thrust_length_m - StanceLeg(context, memory).length_m;
-      memory.hop.off_steps = 0;
+      BeginExtension(memory.hop);
       break;
     case RunningPhase::kUpwardFlight:
       LearnEnergyLoss(context, memory);
@@ -353,23 +380,39 @@ AxialTarget JumpSpring(const Context& context, const GaitMemory& memory,
   return spring;
 }
 
+}  // namespace
+
+double ReachingLength(const Context& context) {
+  return context.gains.hopping.touchdown_length_m + kReachM;
+}
+
+namespace {
+
 /// "If one leg reaches the ground before the other, the second leg is extended to make contact."
 LegTarget Reaching(const Context& context, const GaitMemory& memory, int leg) {
   LegTarget target;
   target.task = LegTask::kPlaceHips;
   target.r_HF_W_m = HipToFoot(context.body, leg, HoppingFoothold(context, memory, leg),
                               context.body.legs[leg].length_m);
-  target.axial.length_m = context.gains.hopping.touchdown_length_m + kReachM;
+  target.axial.length_m = ReachingLength(context);
   target.axial.stiffness_n_per_m = context.gains.servo.leg_stiffness_n_per_m / 2;
   target.axial.damping_ns_per_m = context.gains.servo.leg_damping_ns_per_m;
   return target;
+}
+
+/// "If one leg leaves the ground first, the second leg is retracted to initiate flight."
+LegTarget Retracting(const Context& context, const GaitMemory& memory, int leg) {
+  return Placed(HipToFoot(context.body, leg, HoppingFoothold(context, memory, leg),
+                          context.gains.hopping.jump_flight_length_m));
 }
 
 Targets JumpingStance(const Context& context, const GaitMemory& memory) {
   Targets targets;
   for (int i = 0; i < 2; ++i) {
     const biped::LegState& leg = context.body.legs[i];
-    if (leg.touching) {
+    if (OneLegLeft(memory)) {
+      targets.legs[i] = Retracting(context, memory, i);
+    } else if (leg.touching) {
       targets.legs[i].task = LegTask::kSupport;
       targets.legs[i].axial = OnSlope(context, memory, i, JumpSpring(context, memory, leg));
     } else {

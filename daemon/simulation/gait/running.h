@@ -16,4 +16,21 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory);
 /// Compression ends, `memory.gait` is walking or stepping and the targets are empty.
 Targets AdvanceRunning(const Context& context, GaitMemory& memory);
 
+/// In Extension: counts steps that look like lift-off, where the leg is at its rest length (a light
+/// foot may well stay on the ground then) or off the ground, and notes which leg left it first.
+void WatchExtension(const Context& context, GaitMemory& memory);
+
+/// Nothing has left the ground yet in the Extension that begins.
+void BeginExtension(HopSupport& hop);
+
+/// In a jump's Extension: both legs pushed, and one has left the ground. "The second leg is
+/// retracted to initiate flight."
+bool OneLegLeft(const GaitMemory& memory);
+
+/// In an absorbing Compression: the vertical speed is taken out.
+bool LandingDone(const Context& context, const GaitMemory& memory);
+
+/// Length of a jump's second leg that is "extended to make contact" once the other has landed, m.
+double ReachingLength(const Context& context);
+
 }  // namespace footing::gait

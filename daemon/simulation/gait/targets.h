@@ -90,6 +90,7 @@ struct WalkingStep {
   Eigen::Vector3d landed_W_m = Eigen::Vector3d::Zero();  ///< Where the supporting foot touched.
   double swing_time_s = 0;                               ///< Time of this step; 0: the gait's own.
   std::optional<int> strides_to_pit;  ///< With this one; 0 steps over it; none is planned for.
+  double extends_since_s = 0;         ///< The paper's gaits: when this phase's extension began.
   double support_height_m = 0;        ///< Ground's height that the hip goes by, foot ball's centre.
 };
 
@@ -100,7 +101,11 @@ struct HopSupport {
   double energy_loss_j = 15;           ///< A hop loses this; learned from the lift-off speed.
   std::array<double, 2> leg_loss_j{};  ///< Running, a step on this leg loses so much besides.
   double thrust_length_m = 0.95;
-  int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
+  Eigen::Vector3d idle_r_HF_B_m = Eigen::Vector3d::Zero();  ///< The paper's: kept from touchdown.
+  std::array<bool, 2> pushed{};        ///< A jump's legs that touched in this Extension, ...
+  std::array<int, 2> leg_off_steps{};  ///< ... simulation steps since they did, ...
+  bool leg_left = false;               ///< ... and whether one left while the other pushes.
+  int off_steps = 0;                   ///< Consecutive simulation steps that looked like lift-off.
 };
 
 /// The last touchdown, for the speed over one step.

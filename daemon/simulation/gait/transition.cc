@@ -344,6 +344,12 @@ bool BeginThrust(const Context& context, GaitMemory& memory) {
       swing <= gains.thrust_from_swing) {
     return false;
   }
+  StartThrust(context, memory);
+  return true;
+}
+
+void StartThrust(const Context& context, GaitMemory& memory) {
+  const TransitionGains& gains = context.gains.transition;
   const bool jump = context.goal.gait == Gait::kJump;
   const double lift_off_mps = jump ? gains.thrust_to_jump_mps : gains.thrust_to_run_mps;
   const double energy_j = context.biped.mass_kg() * lift_off_mps * lift_off_mps / 2 + kThrustLossJ;
@@ -363,7 +369,6 @@ bool BeginThrust(const Context& context, GaitMemory& memory) {
   memory.hop.energy_loss_j = kFirstLossJ;
   memory.ground = {};
   memory.hop.leg_loss_j = {};
-  return true;
 }
 
 void LiftOff(const Context& context, GaitMemory& memory) {

@@ -19,6 +19,9 @@ void Config::Bind(config::Binder& binder) {
   binder.Flag("boards_may_be_left", boards_may_be_left,
               "Let both feet leave the boards in a jump, with the interface boards; the person may "
               "fall beside a board");
+  binder.Text("gaits", gaits,
+              "Controllers of the gaits: best, or paper for the state machines and equations as "
+              "the gait paper prints them");
   binder.Text("mapping_table", mapping_table,
               "Mapping table of the interface, JSON file, such as one of footing-study ranges "
               "(empty: the built-in one)");
@@ -37,6 +40,7 @@ Result<void> Check(const Config& config) {
     return UsageError("unknown --interface " + config.interface +
                       "; there are: " + stream::UserInterfaceNames());
   }
+  if (const auto gaits = engine_files::CheckGaits(config.gaits); !gaits) return gaits.error();
   if (stream::LegTurnSourceNamed(config.turn_by) == stream::TurnSource::kUnspecified) {
     return UsageError("unknown turn_by " + config.turn_by + "; there are: head, feet, trunk");
   }
@@ -110,9 +114,20 @@ std::string TableIn(const v1::EffectiveConfig& message, std::uint64_t interface_
   return interface["table"].dump();
 }
 
+std::string GaitsIn(const v1::EffectiveConfig& message) {
+  const ordered_json json = ordered_json::parse(message.json(), nullptr, false);
+  if (!json.is_object() || !json.contains("settings")) return "best";
+  return json["settings"].value("gaits", "best");
+}
+
 }  // namespace footing::gait_service
 
 namespace footing::engine_files {
+
+Result<void> CheckGaits(const std::string& gaits) {
+  if (gaits == "best" || gaits == "paper") return {};
+  return UsageError("unknown --gaits " + gaits + "; there are: best, paper");
+}
 
 Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
   engine::EngineTexts texts;
@@ -142,6 +157,12 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
     auto gains = config::ReadDataFile(name, wish.data_folder);
     if (!gains) return gains.error();
     texts.gains.push_back({name, std::move(*gains)});
+  }
+  if (const auto known = CheckGaits(wish.gaits); !known) return known.error();
+  if (wish.gaits == "paper") {
+    auto gains = config::ReadDataFile(engine::kPaperGainFile, wish.data_folder);
+    if (!gains) return gains.error();
+    texts.gains.push_back({engine::kPaperGainFile, std::move(*gains)});
   }
   for (const std::string& path : wish.more_gains) {
     auto gains = config::ReadTextFile(path);

@@ -20,6 +20,7 @@ struct Config {
   std::string turn_by = "head";     ///< For the interface leg: head, feet or trunk.
   bool camera_roll = false;         ///< Likewise: the picture follows the head.
   bool boards_may_be_left = false;  ///< For the interface boards: both feet may leave them.
+  std::string gaits = "best";       ///< Controllers of the gaits: best or paper.
   std::string mapping_table;        ///< Path, of the interface; empty: the built-in one.
   std::string track = "endless";    ///< Name of a built-in track, or a path.
   double frame_rate_hz = 100;       ///< CharacterFrames a second.
@@ -32,6 +33,9 @@ struct Config {
 
 /// Usage error that lists what there is when the interface or what turns is unknown.
 Result<void> Check(const Config& config);
+
+/// The gaits' controllers that an effective config of a recording names; "best" where it has none.
+std::string GaitsIn(const v1::EffectiveConfig& message);
 
 /// Source of turns in the interface leg, by its number in the protocol; kUnspecified for others.
 stream::TurnSource LegTurnSource(int number);
@@ -73,10 +77,14 @@ struct Wish {
   stream::UserInterface interface = stream::UserInterface::kWrist;
   std::string mapping_table = "";  ///< Path of the interface's table; empty: the built-in one.
   std::string data_folder = "";  ///< Where the built-in files are; empty: where FindDataFile looks.
+  std::string gaits = "best";    ///< "paper": the gaits as the paper prints them.
   /// Gain tables to read after the built-in ones; a later one replaces what an earlier one had for
   /// its gaits.
   std::vector<std::string> more_gains = {};
 };
+
+/// Usage error unless it is best or paper.
+Result<void> CheckGaits(const std::string& gaits);
 
 /// The texts of the files that the engine runs on. Fails with one line that names the file.
 Result<engine::EngineTexts> ReadTexts(const Wish& wish = {});

@@ -71,7 +71,8 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common
   const auto texts = engine_files::ReadTexts({.track = config.track,
                                               .interface = interface.interface,
                                               .mapping_table = config.mapping_table,
-                                              .data_folder = common.data_folder});
+                                              .data_folder = common.data_folder,
+                                              .gaits = config.gaits});
   if (!texts) return texts.error();
   engine::EngineConfig engine_config;
   engine_config.fall_shown_s = config.fall_shown_s;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -242,6 +243,17 @@ TEST(Evolution, IsTheSameForTheSameSeedAndAnotherForAnother) {
   };
   EXPECT_EQ(after(1), after(1));
   EXPECT_NE(after(1), after(2));
+}
+
+TEST(SearchSpace, OfThePapersGaitsHasTheConstantsOfItsEquations) {
+  std::set<std::string_view> names;
+  for (const Dimension& dimension : DimensionsOf(stream::Gait::kWalk, /*paper=*/true)) {
+    names.insert(dimension.gain->name);
+  }
+  EXPECT_TRUE(names.contains("paper.walk_offset_rad"));
+  EXPECT_TRUE(names.contains("paper.walk_gain_rad_per_mps"));
+  EXPECT_TRUE(names.contains("paper.touchdown_length_m"));
+  EXPECT_FALSE(names.contains("walking.step_width_m"));
 }
 
 TEST(SearchSpace, TheStartIsZeroAndStepsAreOfTheGainsSize) {

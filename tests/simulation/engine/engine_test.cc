@@ -53,6 +53,27 @@ TEST(Engine, ReplayedForcesLeadBareStepsToTheSameHash) {
   }
 }
 
+/// `--gaits paper`: each gait at a speed between its slow and its fast set, pushed by 2 N s.
+TEST(PaperGaits, StepWalkRunAndJumpWithoutAFall) {
+  EngineTexts texts = Texts();
+  texts.gains.push_back({kPaperGainFile, test::DataFile(kPaperGainFile)});
+  for (const auto& command :
+       {Command(stream::Gait::kStep, 0), Command(stream::Gait::kWalk, 0.9),
+        Command(stream::Gait::kRun, 2.5), Command(stream::Gait::kJump, 0.5)}) {
+    auto engine = GaitEngine::Create(texts);
+    ASSERT_TRUE(engine.ok()) << engine.error().message;
+    EngineInputs inputs = Direct(command);
+    Simulate(*engine, inputs, 5);
+    Push(inputs, 1, 1.7);
+    Simulate(*engine, inputs, 5);
+    EXPECT_EQ(engine->Output().gait.falls, 0u) << stream::Name(command.gait);
+    EXPECT_EQ(engine->Output().gait.gait, command.gait);
+    const double from_m = engine->Output().gait.distance_m;
+    Simulate(*engine, inputs, 5);
+    EXPECT_NEAR((engine->Output().gait.distance_m - from_m) / 5, command.speed_mps, 0.15);
+  }
+}
+
 TEST(Engine, SimulationTimeIsTheStepTimesH) {
   GaitEngine engine = NewEngine();
   Simulate(engine, {}, 1.234);

@@ -4,6 +4,7 @@
 #include "common/base/units.h"
 #include "daemon/simulation/gait/controller.h"
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/paper.h"
 #include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/gait/targets.h"
 #include "tests/simulation/test_world.h"
@@ -71,6 +72,79 @@ TEST(Equation1, AStepThatWouldCrossTooFarHurries) {
   EXPECT_EQ(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
   scene.body.v_WC.y() = 0.9;  // Over the left, supporting foot: the right one must cross.
   EXPECT_GT(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
+}
+
+TEST(PaperEquations, AreAnglesAsPrinted) {
+  EXPECT_NEAR(PaperWalkingAngle(0.15, -0.3, 1.0, 1.2), 0.15 + 0.3 * 0.2, 1e-12);
+  EXPECT_NEAR(PaperRunningAngle(0.2, -0.08, 3.0, 2.5), 2.5 * 0.1 - 0.08 * 0.5, 1e-12);
+}
+
+/// The paper's gaits look at contacts and at the rear leg, not at a clock.
+TEST(PaperWalking, ChangesItsStateOnContactAndMovement) {
+  LawsScene scene;
+  scene.memory.gait = scene.goal.gait = stream::Gait::kWalk;
+  scene.gains.paper.pick_up_s = 1;
+  const auto after = [&scene](WalkingPhase phase, double time_s) {
+    scene.memory.walking = phase;
+    scene.memory.phase_start_s = scene.body.time_s - time_s;
+    AdvancePaper(scene.context(), scene.memory);
+    return scene.memory.walking;
+  };
+  biped::LegState& rear = scene.body.legs[1];
+  scene.body.legs[0].touching = rear.touching = true;
+  scene.body.legs[0].length_m = rear.length_m = 0.9;
+  EXPECT_EQ(after(WalkingPhase::kDoubleSupport, 0.5), WalkingPhase::kDoubleSupport);
+  rear.touching = false;  // Pulled up by the forward movement of the body.
+  EXPECT_EQ(after(WalkingPhase::kDoubleSupport, 0.1), WalkingPhase::kRise);
+  rear.p_WF.x() = -0.2;
+  EXPECT_EQ(after(WalkingPhase::kRise, 0.5), WalkingPhase::kRise);
+  rear.p_WF.x() = 0.1;
+  EXPECT_EQ(after(WalkingPhase::kRise, 0.1), WalkingPhase::kFall);
+  EXPECT_EQ(after(WalkingPhase::kFall, 0.5), WalkingPhase::kFall);
+  rear.touching = true;
+  EXPECT_EQ(after(WalkingPhase::kFall, 0.1), WalkingPhase::kDoubleSupport);
+  EXPECT_EQ(scene.memory.support_leg, 1);
+}
+
+/// "The transition from Rise to Fall occurs when the foot of the swing leg reaches a specified
+/// height and the sideways velocity of the hip is greater than a threshold."
+TEST(PaperStepping, FallsOnceTheFootIsHighAndTheHipGoesItsWay) {
+  LawsScene scene;
+  scene.memory.gait = scene.goal.gait = stream::Gait::kStep;
+  scene.gains.paper.rise_height_m = 0.03;
+  scene.gains.paper.rise_sideways_mps = 0.05;
+  scene.memory.walking = WalkingPhase::kRise;
+  scene.body.legs[1].p_WF.z() = 0.1;
+  AdvancePaper(scene.context(), scene.memory);
+  EXPECT_EQ(scene.memory.walking, WalkingPhase::kRise);
+  scene.body.v_WB.y() = -0.1;  // Towards the right, swinging leg.
+  AdvancePaper(scene.context(), scene.memory);
+  EXPECT_EQ(scene.memory.walking, WalkingPhase::kFall);
+}
+
+TEST(Jumping, RetractsTheSecondLegOnceTheFirstHasLeftTheGround) {
+  for (const double laws : {0.0, 1.0}) {
+    LawsScene scene;
+    scene.gains.paper.laws = laws;
+    scene.memory.gait = scene.goal.gait = stream::Gait::kJump;
+    scene.memory.running = RunningPhase::kExtension;
+    scene.memory.hop.thrust_length_m = 1.0;
+    for (biped::LegState& leg : scene.body.legs) {
+      leg.touching = true;
+      leg.length_m = 0.9;
+    }
+    const auto left_leg = [&] {
+      return (laws > 0 ? AdvancePaper(scene.context(), scene.memory)
+                       : AdvanceRunning(scene.context(), scene.memory))
+          .legs[0];
+    };
+    scene.body.time_s = 0.05;
+    EXPECT_EQ(left_leg().task, LegTask::kSupport);
+    scene.body.legs[1].touching = false;
+    left_leg();
+    EXPECT_EQ(left_leg().task, LegTask::kPlace) << laws;
+    EXPECT_NEAR(left_leg().r_HF_W_m.norm(), scene.gains.hopping.jump_flight_length_m, 1e-9);
+  }
 }
 
 TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {

@@ -27,6 +27,21 @@ TEST(EffectiveConfig, HasVersionSettingsGainsAndTheTableWithItsValues) {
   EXPECT_EQ(shown["interface"]["table"], json::parse(texts.mapping));
 }
 
+TEST(EffectiveConfig, NamesThePapersGaitsForAReplay) {
+  const auto texts = *engine_files::ReadTexts({.gaits = "paper"});
+  ASSERT_EQ(texts.gains.back().origin, engine::kPaperGainFile);
+  Config config;
+  EXPECT_EQ(GaitsIn(EffectiveConfig({}, config, texts, {}).Message()), "best");
+  config.gaits = "paper";
+  const auto message = EffectiveConfig({}, config, texts, {}).Message();
+  EXPECT_EQ(GaitsIn(message), "paper");
+  EXPECT_TRUE(json::parse(message.json())["sha256"].contains(engine::kPaperGainFile));
+  EXPECT_EQ(GaitsIn({}), "best");
+  config.gaits = "papers";
+  EXPECT_NE(Check(config).error().message.find("best, paper"), std::string::npos);
+  EXPECT_FALSE(engine_files::ReadTexts({.gaits = "papers"}).ok());
+}
+
 TEST(EffectiveConfig, SaysThatThePictureRollsWhoeverChoseIt) {
   const auto texts = *engine_files::ReadTexts();
   EffectiveConfig effective({}, {}, texts, {});
