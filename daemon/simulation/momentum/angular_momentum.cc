@@ -21,7 +21,7 @@ void PaperVertical::Advance(double total_load_n, double step_s) {
 
   near_zero_s_ = std::abs(acceleration_mps2_) < rule_.near_zero ? near_zero_s_ + h : 0;
   if (!rule_.enabled || near_zero_s_ < rule_.after_s) return;
-  const double keep = rule_.keep_per_frame;
+  const double keep = std::exp(-h / rule_.fades_s);
   velocity_mps_ *= keep;
   covariance_ *= keep;
   velocity_variance_ *= keep * keep;
@@ -49,8 +49,9 @@ void AngularMomentum::Advance(const Eigen::Vector3d& rate_nm, double rate_varian
   variance_ += rate_variance_n2m2 * step_s * step_s;
   near_zero_s_ = rate_nm.cwiseAbs().maxCoeff() < rule_.near_zero ? near_zero_s_ + step_s : 0;
   if (!rule_.enabled || near_zero_s_ < rule_.after_s) return;
-  value_ *= rule_.keep_per_frame;
-  variance_ *= rule_.keep_per_frame * rule_.keep_per_frame;
+  const double keep = std::exp(-step_s / rule_.fades_s);
+  value_ *= keep;
+  variance_ *= keep * keep;
 }
 
 }  // namespace footing::momentum

@@ -10,10 +10,10 @@ namespace footing::momentum {
 
 /// When the paper's rule takes velocity or momentum away: the rate has been near zero for a while.
 struct DecayRule {
-  bool enabled = true;      ///< Off: the ablation that shows what one outlier does.
-  double near_zero = 0.35;  ///< Limit of the rate's size: m/s² or N m.
-  double after_s = 0.05;    ///< "a short period of time" (section 4.1).
-  double keep_per_frame = 0.9;
+  bool enabled = true;     ///< Off: the ablation that shows what one outlier does.
+  double near_zero = 0.1;  ///< Limit of the rate's size: m/s² or N m.
+  double after_s = 0.05;   ///< "more than 0.05 second" (section 4.1).
+  double fades_s = 0.5;    ///< From then on it decays with this time constant, at any frame rate.
 };
 
 /// Height of the centre of mass by equation (2): double integration of the filtered load with the

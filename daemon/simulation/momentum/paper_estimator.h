@@ -52,8 +52,8 @@ class PaperFoot {
 
 struct PaperConfig {
   LoadFilter::Config load_filter;
-  DecayRule vertical{true, 0.35, 0.02, 0.9};
-  DecayRule angular{true, 3.0, 0.05, 0.9};
+  DecayRule vertical{true, 0.1, 0.05, 0.5};
+  DecayRule angular{true, 20, 0, 0.1};
   PaperFootConfig foot;
 };
 

@@ -160,7 +160,9 @@ class GaussNewton {
 
 /// Options of the paper's solver, a Fibonacci search along each component.
 struct FibonacciOptions {
-  int evaluations = 8;  ///< For equation (6), a component: 1/34 of the interval is found.
+  /// For equation (6), a component: 1/1597 of the interval is found. Steps of 1/34 (8 evaluations)
+  /// are changes of momentum that no body has, and the term of L then held the pose back.
+  int evaluations = 16;
   int sweeps = 1;
   int first_sweeps = 6;  ///< For the first frame, each over the whole range.
   /// A later frame searches so many standard deviations to each side of the last coefficient.

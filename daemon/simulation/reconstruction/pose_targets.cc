@@ -304,9 +304,11 @@ void PaperMode::SetTargets(const Measurement& now, const Truth& truth, double ma
 namespace {
 
 constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
-constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 2;
+constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 15;
 constexpr double kPaperArmSdRad = 0.2;
 constexpr double kTrueFootSdM = 0.015, kTrueComSdM = 0.01, kTrueAngularSd = 1;
+// One sweep finds no pose to match a change of momentum exactly: held closer, it stays behind.
+constexpr double kTrueAngularSearchSd = 10;
 constexpr double kHingeM = 0.25;  // Distance at which a turn of the upper arm counts as a length.
 constexpr int kPelvis = 0;        // The root.
 constexpr double kPelvisM = 0.2;  // The same of the pelvis; any length makes the same terms.
@@ -469,7 +471,8 @@ void OverrideMomentumTargets(const Truth& truth, const Options& options,
   if (truth.angular_W) {
     targets.has_angular = options.use_angular_momentum;
     targets.angular_W = *truth.angular_W;
-    targets.angular_sd.setConstant(kTrueAngularSd);
+    targets.angular_sd.setConstant(options.mode == Mode::kPaper ? kTrueAngularSearchSd
+                                                                : kTrueAngularSd);
   }
 }
 

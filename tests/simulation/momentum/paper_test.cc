@@ -28,13 +28,24 @@ TEST(PaperVertical, DecayTakesAwayWhatOneOutlierLeft) {
       const double outlier = i == 100 ? 10 * kMadeMassKg : 0;  // 10 m/s² for one frame.
       height.Advance(kPaperWeightN + outlier, kMadeStepS);
     }
-    // Without it 1/6 m/s go on for 500 frames; with it they end in 1 / (1 - 0.9) frames.
+    // Without it 1/6 m/s go on for 500 frames; with it for 0.05 s and the time constant of 0.5 s.
     if (decay) {
-      EXPECT_NEAR(height.height_m(), 1.0, 0.05);
+      EXPECT_NEAR(height.height_m(), 1.0 + 10 * kMadeStepS * (0.05 + 0.5), 0.01);
     } else {
       EXPECT_NEAR(height.height_m(), 1.0 + 500 * kMadeStepS * 10 * kMadeStepS, 0.02);
     }
   }
+}
+
+TEST(PaperVertical, DecaysInSecondsAtAnyRateOfFrames) {
+  const auto rises_m = [](double rate_hz) {
+    PaperVertical height(DecayRule{}, {1e6, 1e-3}, kMadeMassKg, 1.0);
+    const auto frames = static_cast<int>(10 * rate_hz);
+    for (int i = 0; i < frames; ++i)  // 1/6 m/s in one frame.
+      height.Advance(kPaperWeightN + (i == 0 ? kMadeMassKg * rate_hz / 6 : 0), 1 / rate_hz);
+    return height.height_m() - 1;
+  };
+  EXPECT_NEAR(rises_m(60), rises_m(120), 0.004);  // Half as much at 120 Hz if it were by frames.
 }
 
 TEST(AngularMomentumRate, IsTheMomentOfBothFeetAboutTheCentreOfMass) {
@@ -50,7 +61,7 @@ TEST(AngularMomentumRate, IsTheMomentOfBothFeetAboutTheCentreOfMass) {
 }
 
 TEST(AngularMomentum, DecaysWhenItsRateIsZero) {
-  AngularMomentum momentum({true, 3, 0.05, 0.9});
+  AngularMomentum momentum({true, 3, 0.05, 0.15});
   for (int i = 0; i < 60; ++i) momentum.Advance({0, 10, 0}, 1, kMadeStepS);
   EXPECT_NEAR(momentum.value().y(), 10, 1e-9);
   for (int i = 0; i < 60; ++i) momentum.Advance({0, 0, 0}, 1, kMadeStepS);
