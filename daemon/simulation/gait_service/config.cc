@@ -116,8 +116,9 @@ std::string TableIn(const v1::EffectiveConfig& message, std::uint64_t interface_
 
 std::string GaitsIn(const v1::EffectiveConfig& message) {
   const ordered_json json = ordered_json::parse(message.json(), nullptr, false);
-  if (!json.is_object() || !json.contains("settings")) return "best";
-  return json["settings"].value("gaits", "best");
+  const auto gaits = ordered_json::json_pointer("/settings/gaits");
+  if (!json.contains(gaits) || !json[gaits].is_string()) return "best";
+  return json[gaits].get<std::string>();
 }
 
 }  // namespace footing::gait_service

@@ -37,6 +37,11 @@ TEST(EffectiveConfig, NamesThePapersGaitsForAReplay) {
   EXPECT_EQ(GaitsIn(message), "paper");
   EXPECT_TRUE(json::parse(message.json())["sha256"].contains(engine::kPaperGainFile));
   EXPECT_EQ(GaitsIn({}), "best");
+  for (const char* torn : {R"({"settings":7})", R"({"settings":{"gaits":[]}})", "[1]", "{"}) {
+    v1::EffectiveConfig config_of_a_file;
+    config_of_a_file.set_json(torn);
+    EXPECT_EQ(GaitsIn(config_of_a_file), "best") << torn;
+  }
   config.gaits = "papers";
   EXPECT_NE(Check(config).error().message.find("best, paper"), std::string::npos);
   EXPECT_FALSE(engine_files::ReadTexts({.gaits = "papers"}).ok());
