@@ -15,20 +15,15 @@
 #include "daemon/simulation/gait/transition.h"
 
 namespace footing::gait {
-namespace {
-
-/// Walking may begin a thrust and an absorbing Compression may end: then the other machine goes on
-/// in the same step.
-Targets AdvanceMachines(const Context& context, GaitMemory& memory) {
+Targets AdvanceMachines(const Machines& machines, const Context& context, GaitMemory& memory) {
   const auto hops = [&memory] { return IsHopping(memory.gait) || memory.transition.thrusting; };
   const bool hopped = hops();
-  const Targets targets =
-      hopped ? AdvanceRunning(context, memory) : AdvanceWalking(context, memory);
+  const Targets targets = hopped ? machines.advance_running(context, memory)
+                                 : machines.advance_walking(context, memory);
   if (hops() == hopped) return targets;
-  return hopped ? WalkingTargets(context, memory) : RunningTargets(context, memory);
+  return hopped ? machines.walking_targets(context, memory)
+                : machines.running_targets(context, memory);
 }
-
-}  // namespace
 
 GaitMemory Standing(double heading_rad, double time_s) {
   GaitMemory memory;
@@ -51,7 +46,8 @@ physics::JointEfforts Advance(const biped::BodyState& body, const biped::BipedPa
   if (gains.paper.laws > 0.5) {
     return Servo(AdvancePaper(context, memory), body, biped, gains, step_s, memory);
   }
-  Targets targets = AdvanceMachines(context, memory);
+  Targets targets = AdvanceMachines(
+      {AdvanceWalking, AdvanceRunning, WalkingTargets, RunningTargets}, context, memory);
   targets.lean_rad += AnticipatedLean(context, memory);
   KeepLegsApart(context, memory, targets);
   return Servo(targets, body, biped, gains, step_s, memory);

@@ -106,4 +106,16 @@ Targets WalkingTargets(const Context& context, const GaitMemory& memory);
 /// left to AdvanceRunning: then `memory.transition.thrusting` is set and the targets are empty.
 Targets AdvanceWalking(const Context& context, GaitMemory& memory);
 
+/// A machine of walking and one of running and jumping, each with the laws of its states.
+struct Machines {
+  Targets (*advance_walking)(const Context& context, GaitMemory& memory);
+  Targets (*advance_running)(const Context& context, GaitMemory& memory);
+  Targets (*walking_targets)(const Context& context, const GaitMemory& memory);
+  Targets (*running_targets)(const Context& context, const GaitMemory& memory);
+};
+
+/// One step of the machine that is due. Walking may begin a thrust and an absorbing Compression may
+/// end: then the other machine goes on in the same step.
+Targets AdvanceMachines(const Machines& machines, const Context& context, GaitMemory& memory);
+
 }  // namespace footing::gait

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 /// Shorter states are chatter of the contact, s.
 constexpr double kShortestSupportS = 0.02;
 constexpr double kShortestFallS = 0.05;
-/// A leg this near to its full length is no longer the one that carries, m.
+/// Within this of its full length a leg carries no more, m.
 constexpr double kExtendedM = 0.004;
 /// Angles of a leg are kept within this, rad.
 constexpr double kLargestAngleRad = 0.7;
@@ -317,12 +317,9 @@ double PaperRunningAngle(double support_time_s, double gain_s, double desired_mp
 }
 
 Targets AdvancePaper(const Context& context, GaitMemory& memory) {
-  const auto hops = [&memory] { return IsHopping(memory.gait) || memory.transition.thrusting; };
-  const bool hopped = hops();
-  const Targets targets =
-      hopped ? AdvancePaperRunning(context, memory) : AdvancePaperWalking(context, memory);
-  if (hops() == hopped) return targets;
-  return hopped ? PaperWalkingTargets(context, memory) : PaperRunningTargets(context, memory);
+  return AdvanceMachines(
+      {AdvancePaperWalking, AdvancePaperRunning, PaperWalkingTargets, PaperRunningTargets}, context,
+      memory);
 }
 
 }  // namespace footing::gait

@@ -9,6 +9,12 @@
 
 namespace footing::momentum {
 
+double Decay::Advance(double rate, double step_s) {
+  near_zero_s_ = std::abs(rate) < rule_.near_zero ? near_zero_s_ + step_s : 0;
+  if (!rule_.enabled || near_zero_s_ < rule_.after_s) return 1;
+  return std::exp(-step_s / rule_.fades_s);
+}
+
 void PaperVertical::Advance(double total_load_n, double step_s) {
   const double h = step_s;
   acceleration_mps2_ = load_.Advance(total_load_n) / mass_kg_ - kStandardGravityMps2;
@@ -19,9 +25,7 @@ void PaperVertical::Advance(double total_load_n, double step_s) {
   covariance_ += velocity_variance_ * h + q * h;
   velocity_variance_ += q;
 
-  near_zero_s_ = std::abs(acceleration_mps2_) < rule_.near_zero ? near_zero_s_ + h : 0;
-  if (!rule_.enabled || near_zero_s_ < rule_.after_s) return;
-  const double keep = std::exp(-h / rule_.fades_s);
+  const double keep = decay_.Advance(acceleration_mps2_, h);
   velocity_mps_ *= keep;
   covariance_ *= keep;
   velocity_variance_ *= keep * keep;
@@ -47,9 +51,7 @@ void AngularMomentum::Advance(const Eigen::Vector3d& rate_nm, double rate_varian
                               double step_s) {
   value_ += rate_nm * step_s;
   variance_ += rate_variance_n2m2 * step_s * step_s;
-  near_zero_s_ = rate_nm.cwiseAbs().maxCoeff() < rule_.near_zero ? near_zero_s_ + step_s : 0;
-  if (!rule_.enabled || near_zero_s_ < rule_.after_s) return;
-  const double keep = std::exp(-step_s / rule_.fades_s);
+  const double keep = decay_.Advance(rate_nm.cwiseAbs().maxCoeff(), step_s);
   value_ *= keep;
   variance_ *= keep * keep;
 }

@@ -16,6 +16,19 @@ struct DecayRule {
   double fades_s = 0.5;    ///< From then on it decays with this time constant, at any frame rate.
 };
 
+/// The rule over time. A plain value.
+class Decay {
+ public:
+  explicit Decay(const DecayRule& rule) : rule_(rule) {}
+
+  /// One frame with a rate of this size: the share of velocity or momentum that is left after it.
+  double Advance(double rate, double step_s);
+
+ private:
+  DecayRule rule_;
+  double near_zero_s_ = 0;
+};
+
 /// Height of the centre of mass by equation (2): double integration of the filtered load with the
 /// velocity's decay (section 4.1). F_y of equation (2) is the net force: the weight is taken off.
 /// A plain value.
@@ -23,7 +36,7 @@ class PaperVertical {
  public:
   PaperVertical(const DecayRule& rule, const LoadFilter::Config& filter, double mass_kg,
                 double height_m)
-      : rule_(rule), load_(filter), mass_kg_(mass_kg), height_m_(height_m) {}
+      : decay_(rule), load_(filter), mass_kg_(mass_kg), height_m_(height_m) {}
 
   void Advance(double total_load_n, double step_s);
 
@@ -36,13 +49,12 @@ class PaperVertical {
   double velocity_variance_m2ps2() const { return velocity_variance_; }
 
  private:
-  DecayRule rule_;
+  Decay decay_;
   LoadFilter load_;
   double mass_kg_;
   double height_m_;
   double velocity_mps_ = 0;
   double acceleration_mps2_ = 0;
-  double near_zero_s_ = 0;
   double variance_m2_ = 0;
   double covariance_ = 0;
   double velocity_variance_ = 0;
@@ -58,7 +70,7 @@ Eigen::Vector3d AngularMomentumRate(const std::array<Pressure, kFeet>& feet,
 /// Its integral with the paper's decay (section 4.3). A plain value.
 class AngularMomentum {
  public:
-  explicit AngularMomentum(const DecayRule& rule) : rule_(rule) {}
+  explicit AngularMomentum(const DecayRule& rule) : decay_(rule) {}
 
   void Advance(const Eigen::Vector3d& rate_nm, double rate_variance_n2m2, double step_s);
 
@@ -66,10 +78,9 @@ class AngularMomentum {
   double variance() const { return variance_; }
 
  private:
-  DecayRule rule_;
+  Decay decay_;
   Eigen::Vector3d value_ = Eigen::Vector3d::Zero();
   double variance_ = 0;
-  double near_zero_s_ = 0;
 };
 
 }  // namespace footing::momentum
