@@ -807,6 +807,20 @@ Result<void> NextSubject(const std::string& file, const Shared& shared) {
   return {};
 }
 
+Result<void> SetMode(const std::string& mode, const std::vector<std::string>& left_out,
+                     const Shared& shared) {
+  v1::Command command;
+  v1::SetPoseMode& set = *command.mutable_set_pose_mode();
+  set.set_character(1);
+  set.set_mode(mode);
+  for (const std::string& part : left_out) set.add_left_out(part);
+  if (const auto sent = Send(shared, std::move(command)); !sent) return sent;
+  Print({{"mode", mode}, {"left_out", left_out}},
+        mode + " mode" + (left_out.empty() ? "" : " without " + text::Joined(left_out, ", ")),
+        shared);
+  return {};
+}
+
 void Keep(const Result<void>& done, Shared& shared) {
   if (!done) shared.exit_code = cli::Report(done.error());
 }
@@ -824,6 +838,24 @@ void AddPoseCommands(CLI::App& app, Shared& shared) {
       ->required();
   next->footer("Example:\n  footing-ctl subject p08.json   # connects to footing-sim");
   next->callback([file, &shared] { Keep(NextSubject(*file, shared), shared); });
+
+  const auto mode = std::make_shared<std::string>();
+  const auto left_out = std::make_shared<std::vector<std::string>>();
+  CLI::App* change = app.add_subcommand(
+      "mode", "Change the mode of the pose engine; stand upright meanwhile, the T-pose stays");
+  change->add_option("MODE", *mode, "best, or paper")
+      ->required()
+      ->check(CLI::IsMember({"best", "paper"}));
+  change
+      ->add_option("--leave-out", *left_out,
+                   "Parts to leave out: angular_momentum, momentum, posture, basis, cleanup")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"angular_momentum", "momentum", "posture", "basis", "cleanup"}));
+  change->footer(
+      "Examples (connect to footing-sim):\n"
+      "  footing-ctl mode paper\n"
+      "  footing-ctl mode paper --leave-out angular_momentum");
+  change->callback([mode, left_out, &shared] { Keep(SetMode(*mode, *left_out, shared), shared); });
 }
 
 namespace {

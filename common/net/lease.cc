@@ -127,6 +127,8 @@ const char* Guarded(const v1::Command& command) {
       return "calibrate_t_pose";
     case v1::Command::kSetSubject:
       return "set_subject";
+    case v1::Command::kSetPoseMode:
+      return "set_pose_mode";
     case v1::Command::kStartTrial:
       return "start_trial";
     case v1::Command::kStopTrial:

@@ -105,7 +105,8 @@ SCHEMAS = {
              4: ("calibration_progress", "double"), 6: ("mass_kg", "double"),
              7: ("height_m", "double"), 8: ("lag_s", "double"), 9: ("momentum_valid", "bool"),
              14: ("feet", "*body_foot"), 15: ("resets", "uint"), 17: ("note", "text"),
-             20: ("contact_source", "text"), 22: ("hands_source", "text")},
+             20: ("contact_source", "text"), 22: ("hands_source", "text"),
+             23: ("left_out", "*text")},
     "character_frame": {1: ("world", "text"), 2: ("step", "uint"), 3: ("time_s", "double"),
                         4: ("characters", "*character"), 5: ("overruns", "uint")},
     "response": {

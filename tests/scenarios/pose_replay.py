@@ -28,12 +28,17 @@ def run(binaries, hands):
                              stage.simulation, "--out", recording, "--seconds", 22)
         stage.wait_for(lambda: "footing-sim" in (stage.folder / "footing-log.log").read_text(),
                        "the logger to be connected")
-        # A T-pose, then a second subject in the middle of the motion.
+        # A T-pose, then the paper's mode, then a second subject in the middle of the motion.
         source = {"straps": "wiimote"}.get(hands, hands)
         try:
             Watcher(stage.simulation).wait(lambda body: body["calibrated"] and body["hands_source"] == source, "the hands", 14)
         except AssertionError as missed:
             raise TPoseMissed(missed) from missed
+        done = stage.run("footing-ctl", "--connect", stage.simulation, "mode", "paper", "--leave-out", "angular_momentum")
+        assert done.returncode == 0, done
+        Watcher(stage.simulation).wait(
+            lambda body: body["mode"] == "paper" and body["left_out"] == ["angular_momentum"] and body["calibrated"],
+            "the paper's mode with the T-pose", 4)
         subject = stage.folder / "p02.json"
         subject.write_text('{"code": "p02", "height_m": 1.62}')
         done = stage.run("footing-ctl", "--connect", stage.simulation, "subject", subject)

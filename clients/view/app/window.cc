@@ -1,5 +1,6 @@
 #include "clients/view/app/window.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
@@ -91,6 +92,9 @@ void Answer(LiveControls& controls, const Options& options, Background& backgrou
       Say(model, why);
     } else if (key == 'T') {
       background.SendTo(kSimulation, TPoseCommand());
+    } else if (scene::ChangesMode(key)) {
+      const auto& characters = model.playout.Newest().characters;
+      background.SendTo(kSimulation, ModeCommand(key, *characters.front().body));
     } else if (key == 'N') {
       background.SendTo(kSimulation, options.next_subjects[next_subject++]);
       next_subject %= options.next_subjects.size();
@@ -283,6 +287,22 @@ Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>&
 v1::Command TPoseCommand() {
   v1::Command command;
   command.mutable_calibrate_t_pose()->set_character(1);
+  return command;
+}
+
+v1::Command ModeCommand(char key, const scene::BodyState& body) {
+  v1::Command command;
+  v1::SetPoseMode& set = *command.mutable_set_pose_mode();
+  set.set_character(1);
+  const bool other = key == 'M';
+  set.set_mode((body.mode == "paper") != other ? "paper" : "best");
+  const std::string part = scene::PartOfKey(key);
+  for (const std::string& left_out : body.left_out) {
+    if (left_out != part) set.add_left_out(left_out);
+  }
+  const bool was_left_out =
+      std::find(body.left_out.begin(), body.left_out.end(), part) != body.left_out.end();
+  if (!part.empty() && !was_left_out) set.add_left_out(part);
   return command;
 }
 

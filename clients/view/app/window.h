@@ -60,5 +60,7 @@ Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>&
 
 /// Forgets the T-pose of the first character.
 v1::Command TPoseCommand();
+/// The other mode, or the mode with or without a part, as the key has it (M, L, U, B, K).
+v1::Command ModeCommand(char key, const scene::BodyState& body);
 
 }  // namespace footing::view

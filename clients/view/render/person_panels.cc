@@ -109,7 +109,7 @@ void DrawHeading(const Paint& p, const Box& in, const scene::CharacterPose& pose
   float x = in.low.x;
   const float row = in.low.y + 30 * s;
   x += p.Label({x, row}, body.mode == "best" ? colour::kAccent : colour::kSecond, kDark,
-               body.mode + " mode") +
+               scene::ModeText(body)) +
        6 * s;
   x += p.Label({x, row}, body.calibrated ? colour::kGood : colour::kWarning, kDark,
                body.calibrated ? "T-pose taken" : "awaiting the T-pose") +

@@ -596,7 +596,7 @@ struct LiveKey {
   Of of;
 };
 
-constexpr std::array<LiveKey, 15> kLiveKeys{{
+constexpr std::array<LiveKey, 20> kLiveKeys{{
     {"?", "show or hide this list", Of::kAll},
     {"H", "hide or show the panels", Of::kAll},
     {"F11", "full screen, or a window again", Of::kAll},
@@ -608,6 +608,11 @@ constexpr std::array<LiveKey, 15> kLiveKeys{{
     {"R", "replay the last fall in slow motion", Of::kBiped},
     {"T", "take the T-pose again", Of::kPerson},
     {"N", "the next subject", Of::kPerson},
+    {"M", "best mode, or the mode of the paper; stand upright", Of::kPerson},
+    {"L", "with or without the angular momentum", Of::kPerson},
+    {"U", "with or without the linear momentum", Of::kPerson},
+    {"B", "with or without the basis of poses", Of::kPerson},
+    {"K", "with or without the clean-up of the feet", Of::kPerson},
     {"O", "the true pose beside the body, or over it", Of::kPerson},
     {"V", "the preview of the camera", Of::kAll},
     {"C", "calibrate where the camera stands; X ends it", Of::kAll},
@@ -621,10 +626,27 @@ bool IsOfOther(Of of, Engine engine) {
          (of == Of::kPerson && engine == Engine::kBiped);
 }
 
-/// T and N send a command.
-bool Commands(char letter) { return letter == 'T' || letter == 'N'; }
+/// T, N and those of the mode send a command.
+bool Commands(char letter) { return letter == 'T' || letter == 'N' || ChangesMode(letter); }
 
 }  // namespace
+
+bool ChangesMode(char key) { return key == 'M' || !PartOfKey(key).empty(); }
+
+std::string PartOfKey(char key) {
+  switch (key) {
+    case 'L':
+      return "angular_momentum";
+    case 'U':
+      return "momentum";
+    case 'B':
+      return "basis";
+    case 'K':
+      return "cleanup";
+    default:
+      return "";
+  }
+}
 
 Engine EngineOf(const Model& model) {
   if (model.playout.empty() || model.playout.Newest().characters.empty()) return Engine::kUnknown;

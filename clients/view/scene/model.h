@@ -300,6 +300,11 @@ struct KeyLine {
 /// The keys of a live view that do something now, in the order of the list.
 std::vector<KeyLine> LiveKeyLines(const KeyContext& context);
 
+/// Whether the key changes the mode of the pose engine (M), or leaves a part of it out or in.
+bool ChangesMode(char key);
+/// That part, as SetPoseMode names it; empty for other keys.
+std::string PartOfKey(char key);
+
 /// Why a key does nothing now, and what to do; empty where it does what the list says. `key` is a
 /// capital letter.
 std::string WhyNoKey(char key, const KeyContext& context);

@@ -59,7 +59,7 @@ std::vector<std::string> BodyLines(const CharacterPose& pose) {
   const BodyState& body = *pose.body;
   std::vector<std::string> lines{
       "  " + (body.subject.empty() ? std::string("no subject file") : body.subject) + "   " +
-      body.mode + " mode   lag " + Fixed(1e3 * body.lag_s, 0) + " ms   resets " +
+      ModeText(body) + "   lag " + Fixed(1e3 * body.lag_s, 0) + " ms   resets " +
       std::to_string(body.resets) + "   solved in " + Fixed(1e-3 * body.solve_us, 2) + " ms"};
   if (body.calibrated) {
     lines.push_back("  " + Fixed(body.mass_kg, 1) + " kg   COM height " + Fixed(pose.com_m.z(), 2) +
@@ -754,6 +754,16 @@ std::vector<std::string> StudyLines(const stream::StudyState& study, double pass
                                  StudyNext(study)};
   if (const std::string keys = StudyKeys(study); !keys.empty()) lines.push_back(keys);
   return lines;
+}
+
+std::string ModeText(const BodyState& body) {
+  std::string text = body.mode + " mode";
+  for (std::size_t i = 0; i < body.left_out.size(); ++i) {
+    std::string part = body.left_out[i];
+    std::replace(part.begin(), part.end(), '_', ' ');
+    text += (i == 0 ? " without " : ", ") + part;
+  }
+  return text;
 }
 
 }  // namespace footing::scene

@@ -154,6 +154,9 @@ struct ParticipantText {
 std::optional<ParticipantText> ParticipantTextOf(const stream::StudyState& study, double passed_s,
                                                  bool started);
 
+/// The mode of the pose engine and what it leaves out: "paper mode without angular momentum".
+std::string ModeText(const BodyState& body);
+
 /// All of it, a line each.
 std::vector<std::string> StudyLines(const stream::StudyState& study, double passed_s);
 

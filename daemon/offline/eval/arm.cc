@@ -88,14 +88,12 @@ class ArmTrial {
         for (const arms::HandReading& reading : of_place) clipped_ += reading.clipped ? 1 : 0;
         readings_ += of_place.size();
       }
-      if (!readings[arm][0].empty()) newest_[arm] = readings[arm][0].back();
     }
   }
 
   void AdvanceNetworks(double step_s) {
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
-      const auto input =
-          arm_network::MakeInput(arm, newest_[arm], tracker_.hand(arm), tracker_.features());
+      const auto input = arm_network::MakeInput(arm, tracker_.hand(arm), tracker_.features());
       kinematic_pose_[arm] = arm_network::Predicted(kinematic_pose_[arm], kElbowAxis_U,
                                                     input.angular_velocity_W_radps, step_s);
       for (NetworkScore& one : networks_) {
@@ -155,7 +153,6 @@ class ArmTrial {
   body::Kinematics at_;
   arms::ArmDirections mean_;
   std::vector<NetworkScore> networks_;
-  std::array<arms::HandReading, arms::kArms> newest_{};
   std::array<arm_network::ArmPose, arms::kArms> kinematic_pose_ = {};
   ArmScore estimate_, still_, kinematic_;
   TurnScore turn_;
@@ -239,20 +236,10 @@ struct Flags {
   PoseSceneOptions scene;
   std::string model;
   std::vector<std::string> networks;
+  bool same_person = false;
   std::vector<std::string> devices = {"fist"};
   double loop_minutes = 0;
 };
-
-/// Refuses one that was trained on the motion's subject.
-Result<arm_network::ArmNetwork> ReadNetwork(const std::string& path, const std::string& motion) {
-  const auto bytes = config::ReadTextFile(path, model::kMostFileBytes);
-  if (!bytes) return bytes.error();
-  const auto model = wire::FromModelFile(*bytes, path);
-  if (!model) return model.error();
-  const std::string subject = model::SubjectOfFile(std::filesystem::path(motion).stem().string());
-  if (auto fresh = model::CheckNotTrainedOn(*model, subject, path); !fresh) return fresh.error();
-  return arm_network::MakeArmNetwork(*model, path);
-}
 
 Result<pose_run::Places> PlacesOf(const std::vector<std::string>& names) {
   constexpr std::array kNames{"fist", "upper_arm", "forearm"};  // By arms::Place.
@@ -276,13 +263,15 @@ Result<ordered_json> Evaluate(Flags flags) {
     return UsageError("--network: a network follows the device in the fist; add it to --devices");
   std::optional<arms::ArmModel> model;  // Straps alone need none.
   if ((*places)[0]) {
-    auto read = ReadArmModel(flags.model, flags.scene.motion);
+    auto read = ReadArmModel(flags.model, flags.scene.motion, flags.same_person);
     if (!read) return read.error();
     model = *std::move(read);
   }
   std::vector<arm_network::ArmNetwork> networks;
   for (const std::string& path : flags.networks) {
-    auto network = ReadNetwork(path, flags.scene.motion);
+    const auto read = ReadModel(path, flags.scene.motion, flags.same_person);
+    if (!read) return read.error();
+    auto network = arm_network::MakeArmNetwork(read->model, path);
     if (!network) return network.error();
     networks.push_back(std::move(network).value());
   }
@@ -305,6 +294,8 @@ void AddArmCommand(CLI::App& app, Shared& shared) {
   command->add_option("--network", flags->networks,
                       "Network to compare with, of footing-train arm --kind paper or residual; may "
                       "be repeated");
+  command->add_flag("--same-person", flags->same_person,
+                    "Accept models trained on other takes of the tested person");
   command
       ->add_option("--devices", flags->devices,
                    "Where each arm has a Wiimote: fist, upper_arm, forearm (default fist)")

@@ -10,9 +10,9 @@
 
 #include "daemon/offline/analysis/pose_metrics.h"
 #include "daemon/offline/eval/report.h"
-#include "daemon/offline/learning/network.h"
 #include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/arm_network.h"
 
 namespace footing::eval {
 

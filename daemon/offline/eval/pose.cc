@@ -38,6 +38,23 @@ void DescribeSensors(const PoseFlags& flags, const pose_run::PoseRun& run, order
   json["cop_outside_sensors_share"] = run.outside_share;
 }
 
+/// Arms with devices, as the mode estimates them.
+Result<void> EstimateArms(const PoseFlags& flags, const reconstruction::Models& models,
+                          pose_run::PoseRun& run) {
+  const bool paper = flags.options.mode == reconstruction::Mode::kPaper;
+  const bool can = paper ? models.paper_arm.has_value() : models.arm.has_value();
+  if (flags.hands == "wiimote" && !can) {
+    return UsageError(
+        std::string("--hands wiimote: give a model of kind ") +
+        (paper ? "arm_paper too (footing-train arm --kind paper)" : "arm too (footing-train arm)"));
+  }
+  if (flags.hands != "wiimote" && flags.hands != "straps") return {};
+  arms::ArmTracker tracker(models.arm, models.paper_arm);
+  tracker.UseNetwork(paper);
+  pose_run::EstimateArms(std::move(tracker), run);
+  return {};
+}
+
 Result<ordered_json> Evaluate(PoseFlags flags) {
   if (const auto translated = Translate(flags); !translated) return translated.error();
   if (flags.claims) {  // About the motion and equation (2): no models.
@@ -62,10 +79,7 @@ Result<ordered_json> Evaluate(PoseFlags flags) {
   }
   auto run = plates ? Result<pose_run::PoseRun>(plates->measured) : MakePoseScene(flags.scene);
   if (!run) return run.error();
-  if (flags.hands == "wiimote" && !models->arm)
-    return UsageError("--hands wiimote: give a model of kind arm too (footing-train arm)");
-  if (flags.hands == "wiimote" || flags.hands == "straps")
-    pose_run::EstimateArms(models->arm, *run);
+  if (auto done = EstimateArms(flags, *models, *run); !done) return done.error();
   if (flags.ablations) {
     const auto rows = ScoreAblations(*run, *models, flags.options);
     if (!rows) return Error{rows.error().kind, flags.scene.motion + ": " + rows.error().message};

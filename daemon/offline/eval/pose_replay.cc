@@ -82,6 +82,12 @@ class PoseRerun {
       number = input.pose().subject_number();
       first = pose_service::SubjectFrom(input);
     }
+    if (!recording.inputs.empty()) {
+      const auto first_options =
+          pose_service::OptionsFrom(recording.inputs.begin()->second, rerun->options_);
+      if (!first_options) return first_options.error();
+      rerun->options_ = *first_options;
+    }
     auto run = rerun->MakeRun(number, first);
     if (!run) return run.error();
     rerun->run_ =
@@ -94,8 +100,12 @@ class PoseRerun {
     if (input != nullptr) {
       const std::uint64_t number = input->pose().subject_number();
       if (known_.count(number) == 0) {
+        const auto options = pose_service::OptionsFrom(*input, options_);
+        if (!options) return options.error();
+        options_ = *options;
         auto run = MakeRun(number, pose_service::SubjectFrom(*input));
         if (!run) return run.error();
+        (*run)->same_person = input->pose().same_person();
         subjects_.next.Push(std::move(run).value());
       }
       inputs_.Write(pose_service::PoseAppliedFrom(*input).inputs);
@@ -113,10 +123,10 @@ class PoseRerun {
   /// The newest frame as footing-sim publishes it, with the names of the recorded one.
   v1::CharacterFrame Publish(const v1::CharacterFrame& recorded) const {
     const v1::Character& shown = recorded.characters(0);
-    const auto subject = known_.find(frame_.subject_number);
-    return pose_service::ToCharacterFrame(
-        frame_, subject == known_.end() ? known_.begin()->second : subject->second,
-        shown.body().mode(), recorded.world(), shown.rig(), "");
+    const auto found = known_.find(frame_.subject_number);
+    const Known& known = found == known_.end() ? known_.begin()->second : found->second;
+    return pose_service::ToCharacterFrame(frame_, known.subject, known.options, recorded.world(),
+                                          shown.rig(), "");
   }
 
  private:
@@ -125,15 +135,19 @@ class PoseRerun {
 
   Result<std::unique_ptr<pose_service::SubjectRun>> MakeRun(std::uint64_t number,
                                                             const Subject& subject) {
-    known_[number] = subject;
+    known_[number] = {subject, options_};
     const auto body = pose_service::MakeSubjectBody(subject);
     if (!body) return body.error();
     return pose_service::MakeSubjectRun(number, *body, models_, options_);
   }
 
   const reconstruction::Models models_;
-  const reconstruction::Options options_;
-  std::map<std::uint64_t, Subject> known_;
+  reconstruction::Options options_;  ///< Options of the newest.
+  struct Known {
+    Subject subject;
+    reconstruction::Options options;
+  };
+  std::map<std::uint64_t, Known> known_;
   SubjectExchange subjects_;
   exchange::Latest<PoseInputs> inputs_;
   std::unique_ptr<PoseRun> run_;

@@ -40,23 +40,6 @@ Result<void> CheckNotTrainedOnFile(const model::Model& model, const std::string&
   return {};
 }
 
-/// Refuses one that was trained on the motion's subject, as the file's name has it, or on this very
-/// file under any name; with `same_person` only the latter.
-Result<reconstruction::NamedModel> ReadModel(const std::string& path, const std::string& motion,
-                                             bool same_person) {
-  const auto bytes = config::ReadTextFile(path, model::kMostFileBytes);
-  if (!bytes) return bytes.error();
-  auto model = wire::FromModelFile(*bytes, path);
-  if (!model) return model.error();
-  if (!same_person) {
-    const auto fresh = model::CheckNotTrainedOn(*model, SubjectOf(motion), path);
-    if (!fresh) return fresh.error();
-  }
-  const auto fresh = CheckNotTrainedOnFile(*model, motion, path);
-  if (!fresh) return fresh.error();
-  return reconstruction::NamedModel{path, std::move(*model)};
-}
-
 /// A choreography, by the synthetic person.
 Result<motion_files::LoadedMotion> Perform(const PoseSceneOptions& options) {
   const auto text = config::ReadTextFile(options.motion);
@@ -182,14 +165,30 @@ Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options,
   return pose_run::RunArms(loaded->motion, WithHeight(options, *loaded), options.motion, places);
 }
 
-Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion) {
+Result<reconstruction::NamedModel> ReadModel(const std::string& path, const std::string& motion,
+                                             bool same_person) {
+  const auto bytes = config::ReadTextFile(path, model::kMostFileBytes);
+  if (!bytes) return bytes.error();
+  auto model = wire::FromModelFile(*bytes, path);
+  if (!model) return model.error();
+  if (!same_person) {
+    const auto fresh = model::CheckNotTrainedOn(*model, SubjectOf(motion), path);
+    if (!fresh) return fresh.error();
+  }
+  const auto fresh = CheckNotTrainedOnFile(*model, motion, path);
+  if (!fresh) return fresh.error();
+  return reconstruction::NamedModel{path, std::move(*model)};
+}
+
+Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion,
+                                    bool same_person) {
   std::string path = file;
   if (path.empty()) {
     const auto found = config::FindDataFile("arm.fmodel");
     if (!found) return found.error();
     path = *found;
   }
-  const auto model = ReadModel(path, motion, false);
+  const auto model = ReadModel(path, motion, same_person);
   if (!model) return model.error();
   return arms::MakeArmModel(model->model, path);
 }
@@ -198,7 +197,7 @@ Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& fi
                                               const std::string& motion, bool same_person) {
   std::vector<std::string> paths = files;
   if (paths.empty()) {
-    for (const char* name : {"pose.fmodel", "com.fmodel", "arm.fmodel"}) {
+    for (const char* name : {"pose.fmodel", "com.fmodel", "arm.fmodel", "arm_paper.fmodel"}) {
       const auto path = config::FindDataFile(name);
       if (!path) return path.error();
       paths.push_back(*path);

@@ -41,9 +41,13 @@ Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options);
 Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options,
                                       const pose_run::Places& places);
 
-/// Refuses a model that was trained on the motion's subject. Empty: the one that the product
-/// carries.
-Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion);
+/// Refuses a model that was trained on the motion's subject, as the file's name has it, or on this
+/// very file under any name; with `same_person` only the latter.
+Result<reconstruction::NamedModel> ReadModel(const std::string& path, const std::string& motion,
+                                             bool same_person);
+/// Likewise. Empty: the one that the product carries.
+Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion,
+                                    bool same_person);
 
 /// Reads the models and refuses those that were trained on the motion's subject (the file's name up
 /// to the first '_'); with `same_person`, only those that were trained on this very file: a

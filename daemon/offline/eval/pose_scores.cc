@@ -240,8 +240,9 @@ void AddReportFlags(CLI::App& command, PoseFlags& flags) {
       .add_option("--oracle", flags.oracle,
                   "Quantity taken from the motion in place of its estimate; may be repeated")
       ->check(CLI::IsMember({"com", "momentum", "feet"}));
-  command.add_option("--constant", flags.constants,
-                     "Constant of the best mode, NAME=VALUE; may be repeated");
+  command.add_option(
+      "--constant", flags.constants,
+      "Constant of the mode, NAME=VALUE, those of the paper mode paper.NAME; may be repeated");
   command.add_flag("--baselines,!--no-baselines", flags.baselines,
                    "Compare with reconstructions from fewer measurements");
 }
@@ -299,19 +300,20 @@ Result<void> Translate(PoseFlags& flags) {
   settings.seed = settings.errors.seed;
   flags.options.rate_hz = settings.rate_hz;
   flags.options.lag_s = flags.lag_ms / 1000;
-  flags.options.mode =
-      flags.mode == "paper" ? reconstruction::Mode::kPaper : reconstruction::Mode::kBest;
-  flags.options.use_momentum = !Has(flags.ablate, "momentum");
-  flags.options.use_angular_momentum = !Has(flags.ablate, "angular_momentum");
-  flags.options.clean_up = !Has(flags.ablate, "cleanup");
-  flags.options.use_basis = !Has(flags.ablate, "basis");
-  flags.options.use_posture = !Has(flags.ablate, "posture");
-  return SetConstants(flags.constants, flags.options.best);
+  const auto mode = reconstruction::ModeNamed(flags.mode);
+  if (!mode) return mode.error();
+  flags.options.mode = *mode;
+  if (auto left = reconstruction::LeaveOut(flags.ablate, flags.options); !left) return left;
+  return SetConstants(flags.constants, flags.options);
 }
 
-Result<void> SetConstants(const std::vector<std::string>& assignments,
-                          reconstruction::BestConstants& c) {
-  const std::map<std::string, double*> names = {
+namespace {
+
+std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
+  reconstruction::BestConstants& c = options.best;
+  reconstruction::PaperConstants& paper = options.paper;
+  momentum::PaperConfig& momenta = paper.momentum;
+  return {
       {"hand_sd_m", &c.hand_sd_m},
       {"arm_spread", &c.arm_spread},
       {"belt_sd_rad", &c.belt_sd_rad},
@@ -338,7 +340,31 @@ Result<void> SetConstants(const std::vector<std::string>& assignments,
       {"smooth_weight", &c.smooth_weight},
       {"regressed_prior_weight", &c.regressed_prior_weight},
       {"regressed_smooth_weight", &c.regressed_smooth_weight},
+      {"paper.variance_share", &paper.variance_share},
+      {"paper.span", &paper.span},
+      {"paper.reach", &paper.reach},
+      {"paper.hand_sd_m", &paper.hand_sd_m},
+      {"paper.arm_sd_rad", &paper.arm_sd_rad},
+      {"paper.foot_sd_m", &paper.foot_sd_m},
+      {"paper.com_sd_m", &paper.com_sd_m},
+      {"paper.height_sd_m", &paper.height_sd_m},
+      {"paper.angular_sd", &paper.angular_sd},
+      {"paper.load_walk_n", &momenta.load_filter.walk_n},
+      {"paper.load_noise_n", &momenta.load_filter.noise_n},
+      {"paper.vertical_near_zero", &momenta.vertical.near_zero},
+      {"paper.vertical_after_s", &momenta.vertical.after_s},
+      {"paper.vertical_fades_s", &momenta.vertical.fades_s},
+      {"paper.angular_near_zero", &momenta.angular.near_zero},
+      {"paper.angular_after_s", &momenta.angular.after_s},
+      {"paper.angular_fades_s", &momenta.angular.fades_s},
   };
+}
+
+}  // namespace
+
+Result<void> SetConstants(const std::vector<std::string>& assignments,
+                          reconstruction::Options& options) {
+  const std::map<std::string, double*> names = ConstantsOf(options);
   for (const std::string& assignment : assignments) {
     const auto equal = assignment.find('=');
     const auto found = names.find(assignment.substr(0, equal));

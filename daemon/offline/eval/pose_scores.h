@@ -115,9 +115,9 @@ void AddPoseFlags(CLI::App& command, PoseFlags& flags);
 /// Translates the strings into the options; an error names the flag.
 Result<void> Translate(PoseFlags& flags);
 
-/// Sets constants of the best mode by "name=value", to choose them on clips for validation. An
+/// Sets constants of the modes by "name=value", to choose them on clips for validation. An
 /// error lists the names.
 Result<void> SetConstants(const std::vector<std::string>& assignments,
-                          reconstruction::BestConstants& constants);
+                          reconstruction::Options& options);
 
 }  // namespace footing::eval

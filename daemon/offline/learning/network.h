@@ -1,82 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "common/base/result.h"
-#include "common/model/model.h"
-#include "daemon/simulation/cascade/network.h"
-#include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/arm_network.h"
 
-/// Arm poses by a network that receives its own last estimate (Ha, Bai & Liu 2011, section 5.2), to
-/// compare with the product's regression (docs/hands.md).
 namespace footing::arm_network {
-
-/// Inputs and outputs of a network.
-enum class Kind {
-  kPaper,     ///< {q_a(t), a, omega} to q_a(t + 1), a and omega in the device's frame.
-  kResidual,  ///< Residual of the kinematic prediction, from it and arms::ArmFeatures.
-};
-
-/// q_a of a left arm: four degrees of freedom.
-struct ArmPose {
-  Eigen::Matrix3d R_WU = Eigen::Matrix3d::Identity();  ///< Upper arm; I in the T-pose.
-  double elbow_rad = 0;
-};
-
-/// `elbow_axis_U`: a unit vector about which the elbow bends.
-arms::ArmDirections ToDirections(const ArmPose& pose, const Eigen::Vector3d& elbow_axis_U);
-ArmPose ToPose(const arms::ArmDirections& arm);
-
-/// The least joint velocities (in their squares' sum) whose hand turns as the gyroscope says,
-/// J^+ omega of the paper's equation 4 with a stiff wrist, over a step.
-ArmPose Predicted(const ArmPose& pose, const Eigen::Vector3d& elbow_axis_U,
-                  const Eigen::Vector3d& angular_velocity_W_radps, double step_s);
-
-/// Measurements of one frame of an arm, mirrored to a left one.
-struct FrameInput {
-  Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
-  arms::ArmFeatures::Values features = arms::ArmFeatures::Values::Zero();
-  Eigen::Vector3d angular_velocity_W_radps = Eigen::Vector3d::Zero();
-};
-
-/// The newest reading of an arm's device and both hands' features; all finite.
-FrameInput MakeInput(std::size_t arm, const arms::HandReading& reading,
-                     const arms::HandState& state, const arms::ArmFeatures& features);
-
-inline constexpr std::size_t kOutputs = 4;
-/// Number of inputs of such a network.
-std::size_t InputCount(Kind kind);
-
-/// The network's inputs. `last` is the estimate of the frame before; of kResidual its prediction.
-Eigen::VectorXd NetworkInputs(Kind kind, const ArmPose& last, const Eigen::Vector3d& elbow_axis_U,
-                              const FrameInput& frame);
-/// The outputs that lead from `last` (as above) to `next`, and the way there.
-Eigen::Vector4d NetworkTarget(Kind kind, const ArmPose& last, const ArmPose& next);
-/// The pose that the outputs lead to from `last`.
-ArmPose Applied(Kind kind, const ArmPose& last, const Eigen::Vector4d& output);
-
-/// A recurrent network that estimates an arm's pose frame by frame.
-struct ArmNetwork {
-  Kind kind = Kind::kPaper;
-  Eigen::Vector3d elbow_axis_U = Eigen::Vector3d::UnitZ();
-  cascade::CascadeNetwork network;
-
-  /// The estimate after `last`, one frame later.
-  ArmPose Next(const ArmPose& last, const FrameInput& frame, double step_s) const;
-};
-
-/// "arm_paper" or "arm_residual", as a model's kind.
-std::string KindName(Kind kind);
-
-/// Appends the network to a model file's tensors.
-void AppendTensors(const ArmNetwork& network, model::Model& model);
-/// InvalidData where the model is of another kind or its tensors do not fit; `origin` names it.
-Result<ArmNetwork> MakeArmNetwork(const model::Model& model, const std::string& origin);
 
 /// One arm in one recording, a frame after the other; the first ones in the T-pose.
 struct Sequence {
@@ -91,8 +22,12 @@ struct TrainingOptions {
   /// Rounds of scheduled teacher forcing (Bengio et al. 2015): in the first the network receives
   /// the true last pose, in the last nothing but its own estimates. One: teacher forcing alone.
   int rounds = 4;
-  double noise_rad = 0.2;  ///< On the true poses it receives, the same for two seconds.
-  int every = 12;          ///< Frames from one row of training to the next.
+  /// On the true poses it receives, the same for two seconds: one network each, the best of which
+  /// in closed loop is the result.
+  std::vector<double> noises_rad = {0.2};
+  int every = 12;  ///< Frames from one row of training to the next.
+  /// Least numbers of hidden units, tried likewise; growth stops by the validation rows.
+  std::vector<int> hidden_min = {0};
   int hidden_max = 10;
 };
 
@@ -101,11 +36,12 @@ struct Trained {
   ArmNetwork network;
   int hidden_units = 0;
   int round = 0;           ///< The round it comes from, from 0.
+  double noise_rad = 0;    ///< With which it was trained.
   double closed_loop = 0;  ///< RMS error of upper, hinge and forearm on the last fifths.
   std::size_t rows = 0;    ///< Rows in the last round's training.
 };
 
-/// The paper's: one round, no noise.
+/// Options of the paper's network: as well as it can be trained, since the paper does not say how.
 TrainingOptions PaperOptions();
 
 /// The last fifth of each sequence trains nothing; it chooses the hidden units, and the round by

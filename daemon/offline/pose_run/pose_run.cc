@@ -416,8 +416,7 @@ void Feed(const ArmReadings& readings, double reading_s, arms::ArmTracker& track
   }
 }
 
-void EstimateArms(const std::optional<arms::ArmModel>& model, PoseRun& run) {
-  arms::ArmTracker tracker(model);
+void EstimateArms(arms::ArmTracker tracker, PoseRun& run) {
   const auto aligned = static_cast<std::size_t>(kAlignedS * run.rate_hz);
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     Frame& frame = run.frames[i];

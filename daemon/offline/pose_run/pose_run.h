@@ -221,9 +221,8 @@ class HeldHands {
 /// A frame's readings to their devices.
 void Feed(const ArmReadings& readings, double reading_s, arms::ArmTracker& tracker);
 
-/// Puts how the arms are held into the inputs, by the readings of the run's devices. Straps need no
-/// model.
-void EstimateArms(const std::optional<arms::ArmModel>& model, PoseRun& run);
+/// Puts how the arms are held into the inputs, by the readings of the run's devices.
+void EstimateArms(arms::ArmTracker tracker, PoseRun& run);
 
 /// Measurements of simulated devices on the arms alone during a recorded motion, beside the truth.
 struct ArmFrame {

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -45,6 +46,9 @@ struct ArmOptions {
   MotionOptions motions;
   ModelOptions model;
   std::string kind = "linear";
+  std::optional<int> rounds, every, hidden_max;
+  std::vector<double> noises_rad;
+  std::vector<int> hidden_min;
 };
 
 /// Measurements of simulated devices in the hands during one motion, and how the arms were:
@@ -57,7 +61,6 @@ Result<void> ForEachFrame(const Clip& clip, std::uint64_t seed, const Add& add) 
   if (!run) return run.error();
   const std::array geometry{arms::ArmGeometry(run->body, 0), arms::ArmGeometry(run->body, 1)};
   std::array<arms::HandAttitude, arms::kArms> hands;
-  std::array<arms::HandReading, arms::kArms> newest;
   arms::ArmFeatures features;
   body::Kinematics at(run->body.skeleton);
   const double step_s = 1 / run->rate_hz;
@@ -66,7 +69,6 @@ Result<void> ForEachFrame(const Clip& clip, std::uint64_t seed, const Add& add) 
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
       for (const arms::HandReading& reading : frame.readings[arm][0]) {
         hands[arm].Advance(reading, run->reading_s);
-        newest[arm] = reading;
       }
       if (i == run->aligned) hands[arm].Align();
     }
@@ -78,8 +80,7 @@ Result<void> ForEachFrame(const Clip& clip, std::uint64_t seed, const Add& add) 
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
       arms::ArmDirections truth = geometry[arm].Directions(at);
       if (arm == 1) truth = arms::Mirrored(truth);
-      add(arm, since_s, step_s,
-          arm_network::MakeInput(arm, newest[arm], hands[arm].state(), features), truth);
+      add(arm, since_s, step_s, arm_network::MakeInput(arm, hands[arm].state(), features), truth);
     }
   }
   return {};
@@ -140,16 +141,27 @@ Result<std::vector<arm_network::Sequence>> Sequences(const Clips& clips, std::ui
   return sequences;
 }
 
+/// Those of the kind, with the flags that are given.
+arm_network::TrainingOptions NetworkOptions(arm_network::Kind kind, const ArmOptions& flags) {
+  arm_network::TrainingOptions options = kind == arm_network::Kind::kPaper
+                                             ? arm_network::PaperOptions()
+                                             : arm_network::TrainingOptions{};
+  options.rounds = flags.rounds.value_or(options.rounds);
+  options.every = flags.every.value_or(options.every);
+  options.hidden_max = flags.hidden_max.value_or(options.hidden_max);
+  if (!flags.noises_rad.empty()) options.noises_rad = flags.noises_rad;
+  if (!flags.hidden_min.empty()) options.hidden_min = flags.hidden_min;
+  for (int& least : options.hidden_min) least = std::min(least, options.hidden_max);
+  return options;
+}
+
 int RunNetwork(const ArmOptions& options, const Clips& clips, const Shared& shared) {
   const auto kind =
       options.kind == "paper" ? arm_network::Kind::kPaper : arm_network::Kind::kResidual;
   const auto sequences = Sequences(clips, options.model.seed);
   if (!sequences) return cli::Report(sequences.error());
   const auto trained =
-      arm_network::Train(kind, *sequences,
-                         kind == arm_network::Kind::kPaper ? arm_network::PaperOptions()
-                                                           : arm_network::TrainingOptions{},
-                         options.model.seed);
+      arm_network::Train(kind, *sequences, NetworkOptions(kind, options), options.model.seed);
   model::Model model = NewModel(arm_network::KindName(kind), shared, options.model,
                                 DataFiles(clips.train), clips.subjects);
   arm_network::AppendTensors(trained.network, model);
@@ -157,6 +169,7 @@ int RunNetwork(const ArmOptions& options, const Clips& clips, const Shared& shar
                                          {"subjects", clips.subjects},
                                          {"hidden_units", trained.hidden_units},
                                          {"round", trained.round},
+                                         {"noise_rad", trained.noise_rad},
                                          {"closed_loop_error", trained.closed_loop}};
   return Deliver(model, options.model, report, shared);
 }
@@ -188,10 +201,33 @@ void AddArmCommand(CLI::App& app, Shared& shared) {
   AddMotionOptions(*command, options->motions);
   AddModelOptions(*command, options->model);
   command
-      ->add_option("--kind", options->kind,
-                   "linear: what the product uses; paper, residual: networks that receive their "
-                   "own last estimate, for footing-eval arm --network (default linear)")
+      ->add_option(
+          "--kind", options->kind,
+          "linear: for best mode; paper: the network of paper mode; residual: another that "
+          "receives its own last estimate, for footing-eval arm --network (default linear)")
       ->check(CLI::IsMember({"linear", "paper", "residual"}));
+  command
+      ->add_option("--rounds", options->rounds,
+                   "Rounds of training of a network, the last ones on its own estimates")
+      ->check(CLI::Range(1, 50));
+  command
+      ->add_option("--noise", options->noises_rad,
+                   "Noise of the fed-back angles in the training of a network, rad; may be "
+                   "repeated; the best "
+                   "in closed loop is written")
+      ->check(CLI::Range(0.0, 2.0));
+  command
+      ->add_option("--every", options->every,
+                   "Frames from one row of a network's training to the next")
+      ->check(CLI::Range(1, 120));
+  command
+      ->add_option("--hidden-min", options->hidden_min,
+                   "Minimum number of hidden units of a network; may be repeated likewise")
+      ->check(CLI::Range(0, 64));
+  command
+      ->add_option("--hidden-max", options->hidden_max,
+                   "Maximum number of hidden units of a network")
+      ->check(CLI::Range(0, 64));
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }
 

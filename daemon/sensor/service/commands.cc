@@ -75,6 +75,7 @@ v1::CommandResult CarryOutAllowed(Hub& hub, const Config& config, std::uint64_t 
     case v1::Command::kAppendSegment:
     case v1::Command::kCalibrateTPose:
     case v1::Command::kSetSubject:
+    case v1::Command::kSetPoseMode:
     case v1::Command::kStartTrial:
     case v1::Command::kStopTrial:
     case v1::Command::kCorrectFailure:

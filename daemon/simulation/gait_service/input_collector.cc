@@ -307,6 +307,7 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command, std::uint64
       return Append(command.append_segment());
     case v1::Command::kCalibrateTPose:
     case v1::Command::kSetSubject:
+    case v1::Command::kSetPoseMode:
       return Answer(false, "that is a command for footing-sim --engine pose; this one runs gait");
     default:
       return Answer(false,

@@ -52,7 +52,7 @@ class PaperFoot {
 
 struct PaperConfig {
   LoadFilter::Config load_filter;
-  DecayRule vertical{true, 0.1, 0.05, 0.5};
+  DecayRule vertical{true, 0.1, 0.1, 0.2};
   DecayRule angular{true, 20, 0, 0.1};
   PaperFootConfig foot;
 };

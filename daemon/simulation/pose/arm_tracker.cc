@@ -108,7 +108,9 @@ HandAttitude Unaligned(std::size_t arm, Place place) {
 
 }  // namespace
 
-ArmTracker::ArmTracker(const std::optional<ArmModel>& model) : model_(model) {
+ArmTracker::ArmTracker(const std::optional<ArmModel>& model,
+                       const std::optional<arm_network::ArmNetwork>& network)
+    : model_(model), network_(network) {
   for (std::size_t arm = 0; arm < kArms; ++arm) {
     for (const Place place : {Place::kFist, Place::kUpperArm, Place::kForearm}) Lose(arm, place);
   }
@@ -134,6 +136,8 @@ void ArmTracker::Align() {
     for (HandAttitude& device : devices) device.Align();
   }
   features_ = {};
+  network_poses_ = {};
+  network_s_ = 0;
 }
 
 HandState ArmTracker::StateOf(std::size_t arm, Place place, const Heard& heard) const {
@@ -148,7 +152,9 @@ ArmEstimate ArmTracker::Estimate(std::size_t arm, const Heard& heard) {
   const HandState fist = StateOf(arm, Place::kFist, heard);
   ArmEstimate estimate = estimates_[arm];
   estimate.valid = true;
-  if (model_ && fist.valid) {
+  if (uses_network_ && network_ && fist.valid) {
+    estimate = NetworkEstimate(arm);
+  } else if (!uses_network_ && model_ && fist.valid) {
     features_.Compute(arm, values_);
     const bool other_known = StateOf(1 - arm, Place::kFist, heard).valid;
     ArmBelief belief = RegressedArm(arm, *model_, model_->Predict(values_, other_known), fist);
@@ -164,9 +170,29 @@ ArmEstimate ArmTracker::Estimate(std::size_t arm, const Heard& heard) {
   return estimate;
 }
 
+ArmEstimate ArmTracker::NetworkEstimate(std::size_t arm) const {
+  const ArmDirections left = arm_network::ToDirections(network_poses_[arm], network_->elbow_axis_U);
+  ArmEstimate estimate;
+  estimate.valid = true;
+  estimate.directions = arm == 1 ? Mirrored(left) : left;
+  return estimate;
+}
+
+void ArmTracker::AdvanceNetwork(double step_s) {
+  constexpr double kStepS = 1 / arm_network::kRateHz;
+  for (network_s_ += step_s; network_s_ >= (1 - 1e-3) * kStepS; network_s_ -= kStepS) {
+    for (std::size_t arm = 0; arm < kArms; ++arm) {
+      if (!hand(arm).valid) continue;
+      const auto input = arm_network::MakeInput(arm, hand(arm), features_);
+      network_poses_[arm] = network_->Next(network_poses_[arm], input, kStepS);
+    }
+  }
+}
+
 const std::array<ArmEstimate, kArms>& ArmTracker::Advance(double step_s, const Heard& heard) {
   const bool any = hand(0).valid || hand(1).valid;
   if (any) features_.Advance({hand(0), hand(1)}, step_s);
+  if (any && network_) AdvanceNetwork(step_s);
   for (std::size_t arm = 0; arm < kArms; ++arm) estimates_[arm] = Estimate(arm, heard);
   return estimates_;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/arm_network.h"
 #include "daemon/simulation/pose/hand_attitude.h"
 
 namespace footing::arms {
@@ -48,11 +49,14 @@ inline constexpr Heard kAllHeard{{{true, true, true}, {true, true, true}}};
 /// Both arms from what the devices on them measure: in the fists, strapped on upper arms and
 /// forearms, or both. An arm needs the one in its fist, and a model, or both straps. A value that
 /// can be copied; no allocation after its making. Its past is that of the sensors, never its own
-/// estimates: it cannot run away.
+/// estimates: it cannot run away. The network of paper mode does go by its own estimates.
 class ArmTracker {
  public:
-  /// Without a model devices in the fists count for nothing.
-  explicit ArmTracker(const std::optional<ArmModel>& model);
+  /// Without a model devices in the fists count for nothing, without a network not in paper mode.
+  explicit ArmTracker(const std::optional<ArmModel>& model,
+                      const std::optional<arm_network::ArmNetwork>& network = std::nullopt);
+  /// From now on the network says how arms with a device in the fist are held, or the regression.
+  void UseNetwork(bool use) { uses_network_ = use; }
 
   /// A sample of one device, `step_s` after its last.
   void Add(std::size_t arm, const HandReading& reading, double step_s, Place place = Place::kFist);
@@ -77,8 +81,14 @@ class ArmTracker {
  private:
   HandState StateOf(std::size_t arm, Place place, const Heard& heard) const;
   ArmEstimate Estimate(std::size_t arm, const Heard& heard);
+  ArmEstimate NetworkEstimate(std::size_t arm) const;
+  void AdvanceNetwork(double step_s);
 
   std::optional<ArmModel> model_;
+  std::optional<arm_network::ArmNetwork> network_;
+  bool uses_network_ = false;
+  std::array<arm_network::ArmPose, kArms> network_poses_;  ///< As of left arms.
+  double network_s_ = 0;                                   ///< Since its last step.
   std::array<std::array<HandAttitude, kPlaces>, kArms> devices_;
   ArmFeatures features_;
   ArmFeatures::Values values_ = ArmFeatures::Values::Zero();

@@ -167,10 +167,10 @@ struct FibonacciOptions {
   int first_sweeps = 6;  ///< For the first frame, each over the whole range.
   /// A later frame searches so many standard deviations to each side of the last coefficient.
   double span = 0.3;
-  /// No coefficient is searched further from 0, in its standard deviations: 95 of 100 poses are
+  /// No coefficient is searched further from 0, in its standard deviations: 99 of 100 poses are
   /// within. Where twice as much was allowed, coefficients that little holds wandered to where no
   /// pose is and stayed there, since each search begins from the last (docs/evaluation/pose.md).
-  double reach = 2;
+  double reach = 2.5;
   double frame_s = 1.0 / 60;
 };
 

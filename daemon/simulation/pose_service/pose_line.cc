@@ -22,6 +22,10 @@ void Config::Bind(config::Binder& binder) {
   binder.Text("subject", subject,
               "Subject file of the pose engine: code, height_m, mass_kg, foot_length_m");
   binder.Text("mode", mode, "Reconstruction mode of the pose engine: best or paper");
+  binder.TextList(
+      "leave_out", leave_out,
+      "Parts that the pose engine leaves out: angular_momentum, momentum, posture, basis, "
+      "cleanup");
   binder.Integer("lag_ms", lag_ms, 0, 200,
                  "Output delay of the pose engine, ms: 0, 100 or 200; longer is more accurate");
 }
@@ -34,7 +38,8 @@ Result<void> Check(const Config& config) {
     return UsageError("--lag-ms " + std::to_string(config.lag_ms) +
                       " is not possible; there are: 0, 100, 200");
   }
-  return {};
+  reconstruction::Options options;
+  return reconstruction::LeaveOut(config.leave_out, options);
 }
 
 using serving::Answer;
@@ -61,30 +66,31 @@ Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common
   const auto body = MakeSubjectBody(first);
   if (!body) return body.error();
   reconstruction::Options options;
-  options.mode =
-      config.mode == "paper" ? reconstruction::Mode::kPaper : reconstruction::Mode::kBest;
+  const auto mode = reconstruction::ModeNamed(config.mode);
+  if (!mode) return mode.error();
+  options.mode = *mode;
+  if (auto left = reconstruction::LeaveOut(config.leave_out, options); !left) return left.error();
   options.rate_hz = kRateHz;
   options.lag_s = 1e-3 * static_cast<double>(config.lag_ms);
   auto models = LoadPoseModels(common.data_folder, options.mode);
   if (!models) return models.error();
   auto run = MakeSubjectRun(1, *body, *models, options);
   if (!run) return run.error();
-  return std::unique_ptr<PoseLine>(new PoseLine(common, config, std::move(models).value(), options,
-                                                {1, first, *body}, std::move(run).value(),
+  return std::unique_ptr<PoseLine>(new PoseLine(common, config, std::move(models).value(),
+                                                {1, first, *body, options}, std::move(run).value(),
                                                 wake_descriptor));
 }
 
 PoseLine::PoseLine(const serving::Config& common, const Config& config,
-                   reconstruction::Models models, reconstruction::Options options, Known first,
-                   std::unique_ptr<SubjectRun> run, int wake_descriptor)
-    : mode_(config.mode),
-      effective_config_(EffectiveConfig(common, config)),
+                   reconstruction::Models models, Known first, std::unique_ptr<SubjectRun> run,
+                   int wake_descriptor)
+    : effective_config_(EffectiveConfig(common, config)),
       models_(std::move(models)),
-      options_(options),
       known_{std::move(first)},
       shown_number_(known_.front().number),
       thread_(PoseRun(std::move(run), kRateHz, subjects_), 1 / kRateHz, 1, wake_descriptor),
-      sensors_(common.rig, thread_.inputs(), models_.arm) {
+      sensors_(common.rig, thread_.inputs(), models_.arm, models_.paper_arm) {
+  sensors_.TakeMode(known_.front().options.mode);
   sensors_.TakeSubject(shown_number_);
 }
 
@@ -117,19 +123,39 @@ v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
   if (const auto ok = subject::CheckSubject(next, "set_subject"); !ok) {
     return Answer(false, ok.error().message);
   }
-  if (known_.size() >= SubjectExchange::kMost) {
-    return Answer(false, "set_subject: the subject before is not in place yet; try again");
-  }
   const auto body = MakeSubjectBody(next);
   if (!body) return Answer(false, "set_subject: " + body.error().message);
-  const std::uint64_t number = known_.back().number + 1;
-  auto run = MakeSubjectRun(number, *body, models_, options_);
-  if (!run) return Answer(false, "set_subject: " + run.error().message);
-  if (!subjects_.next.Push(std::move(run).value())) {
-    return Answer(false, "set_subject: the subject before is not in place yet; try again");
+  return Next({0, next, *body, known_.back().options}, "set_subject");
+}
+
+v1::CommandResult PoseLine::TakeMode(const v1::SetPoseMode& message) {
+  Known next = known_.back();
+  const auto mode = reconstruction::ModeNamed(message.mode());
+  if (!mode) return Answer(false, "set_pose_mode: " + mode.error().message);
+  next.options.mode = *mode;
+  next.same_person = true;
+  const std::vector<std::string> parts(message.left_out().begin(), message.left_out().end());
+  if (const auto left = reconstruction::LeaveOut(parts, next.options); !left) {
+    return Answer(false, "set_pose_mode: " + left.error().message);
   }
-  known_.push_back({number, next, *body});
-  sensors_.TakeSubject(number);
+  const v1::CommandResult answer = Next(std::move(next), "set_pose_mode");
+  if (answer.ok()) sensors_.TakeMode(*mode);
+  return answer;
+}
+
+v1::CommandResult PoseLine::Next(Known next, const std::string& command) {
+  if (known_.size() >= SubjectExchange::kMost) {
+    return Answer(false, command + ": the one before is not in place yet; try again");
+  }
+  next.number = known_.back().number + 1;
+  auto run = MakeSubjectRun(next.number, next.body, models_, next.options);
+  if (!run) return Answer(false, command + ": " + run.error().message);
+  (*run)->same_person = next.same_person;
+  if (!subjects_.next.Push(std::move(run).value())) {
+    return Answer(false, command + ": the one before is not in place yet; try again");
+  }
+  sensors_.TakeSubject(next.number);
+  known_.push_back(std::move(next));
   return Answer(true, "");
 }
 
@@ -138,6 +164,7 @@ v1::CommandResult PoseLine::OnCommand(const transport::SessionInfo& who,
   if (const auto refusal = serving::RefuseOtherCharacter(command)) return *refusal;
   if (const auto answer = lease_.Answer(command, who.session, clock::MonotonicNs())) return *answer;
   if (command.has_set_subject()) return TakeSubject(command.set_subject());
+  if (command.has_set_pose_mode()) return TakeMode(command.set_pose_mode());
   if (command.has_calibrate_t_pose()) {
     if (const std::string& problem = sensors_.board_problem(); !problem.empty()) {
       return Answer(false, "calibrate_t_pose: " + problem);
@@ -145,8 +172,10 @@ v1::CommandResult PoseLine::OnCommand(const transport::SessionInfo& who,
     sensors_.Calibrate();
     return Answer(true, "");
   }
-  return Answer(false,
-                "footing-sim --engine pose takes calibrate_t_pose, set_subject and the lease");
+  return Answer(
+      false,
+      "footing-sim --engine pose takes calibrate_t_pose, set_subject, set_pose_mode and the "
+      "lease");
 }
 
 std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
@@ -164,10 +193,11 @@ std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {
     const PoseApplied& applied = frame.applied[static_cast<std::size_t>(i)];
-    *inputs.add_inputs() = ToAppliedInput(applied, Of(applied.inputs.subject_number).subject);
+    const Known& then = Of(applied.inputs.subject_number);
+    *inputs.add_inputs() = ToAppliedInput(applied, then.subject, then.options, then.same_person);
   }
-  v1::CharacterFrame characters =
-      ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig(), sensors_.tracker());
+  v1::CharacterFrame characters = ToCharacterFrame(frame, known.subject, known.options, world_,
+                                                   sensors_.rig(), sensors_.tracker());
   if (!sensors_.board_problem().empty() && characters.characters_size() > 0) {
     characters.mutable_characters(0)->mutable_body()->set_note(sensors_.board_problem());
   }
@@ -199,8 +229,12 @@ Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
                                               reconstruction::Mode mode) {
   std::vector<reconstruction::NamedModel> models;
   std::vector<const char*> names{kPoseFile};
-  if (mode == reconstruction::Mode::kPaper) names.push_back(kComFile);
-  if (config::FindDataFile(kArmFile, data_folder)) names.push_back(kArmFile);
+  if (mode == reconstruction::Mode::kPaper || config::FindDataFile(kComFile, data_folder)) {
+    names.push_back(kComFile);
+  }
+  for (const char* name : {kArmFile, kPaperArmFile}) {
+    if (config::FindDataFile(name, data_folder)) names.push_back(name);
+  }
   for (const char* name : names) {
     auto model = Load(name, data_folder);
     if (!model) return model.error();
@@ -359,7 +393,8 @@ void GetSide(const v1::PoseFoot& foot, const v1::PoseHand& hand, std::size_t sid
 
 }  // namespace
 
-v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject) {
+v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject,
+                                const reconstruction::Options& options, bool same_person) {
   const PoseInputs& inputs = applied.inputs;
   v1::AppliedInput message;
   message.set_step(applied.step);
@@ -376,6 +411,9 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   pose.set_subject_height_m(Finite(subject.height_m));
   pose.set_subject_mass_kg(Finite(subject.mass_kg));
   pose.set_subject_foot_length_m(Finite(subject.foot_length_m));
+  pose.set_same_person(same_person);
+  pose.set_mode(reconstruction::NameOf(options.mode));
+  for (const std::string& part : reconstruction::LeftOut(options)) pose.add_left_out(part);
   return message;
 }
 
@@ -406,6 +444,20 @@ Subject SubjectFrom(const v1::AppliedInput& message) {
   subject.mass_kg = Finite(pose.subject_mass_kg());
   subject.foot_length_m = Finite(pose.subject_foot_length_m());
   return subject;
+}
+
+Result<reconstruction::Options> OptionsFrom(const v1::AppliedInput& message,
+                                            reconstruction::Options options) {
+  const v1::PoseInput& pose = message.pose();
+  if (pose.mode().empty()) return options;
+  const auto mode = reconstruction::ModeNamed(pose.mode());
+  if (!mode) return InvalidData("recorded input: " + mode.error().message);
+  options.mode = *mode;
+  const std::vector<std::string> parts(pose.left_out().begin(), pose.left_out().end());
+  if (const auto left = reconstruction::LeaveOut(parts, options); !left) {
+    return InvalidData("recorded input: " + left.error().message);
+  }
+  return options;
 }
 
 }  // namespace footing::pose_service

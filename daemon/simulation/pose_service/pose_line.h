@@ -26,6 +26,8 @@ struct Config {
   std::string subject;        ///< Subject file; empty: nobody has been named.
   std::string mode = "best";  ///< "best" or "paper".
   std::int64_t lag_ms = 0;    ///< 0, 100 or 200.
+  /// Parts of the mode that are left out (reconstruction::LeaveOut).
+  std::vector<std::string> leave_out;
 
   void Bind(config::Binder& binder);
 };
@@ -69,19 +71,21 @@ class PoseLine {
     std::uint64_t number = 0;
     Subject subject;
     body::Body body;
+    reconstruction::Options options;
+    bool same_person = false;  ///< As the one before, in another mode.
   };
 
   PoseLine(const serving::Config& common, const Config& config, reconstruction::Models models,
-           reconstruction::Options options, Known first, std::unique_ptr<SubjectRun> run,
-           int wake_descriptor);
+           Known first, std::unique_ptr<SubjectRun> run, int wake_descriptor);
   v1::CommandResult TakeSubject(const v1::SetSubject& message);
+  v1::CommandResult TakeMode(const v1::SetPoseMode& message);
+  /// The next one to be reconstructed, or the same person in another mode; `command` names it.
+  v1::CommandResult Next(Known next, const std::string& command);
   const Known& Of(std::uint64_t number) const;
 
   const std::string world_ = "boards";
-  const std::string mode_;
   const std::string effective_config_;  ///< JSON.
   const reconstruction::Models models_;
-  const reconstruction::Options options_;
   std::deque<Known> known_;  ///< Oldest first; the newest is the one asked for last.
   std::uint64_t shown_number_;
   SubjectExchange subjects_;
@@ -94,18 +98,24 @@ class PoseLine {
 inline constexpr const char* kPoseFile = "pose.fmodel";
 inline constexpr const char* kComFile = "com.fmodel";
 inline constexpr const char* kArmFile = "arm.fmodel";
+inline constexpr const char* kPaperArmFile = "arm_paper.fmodel";
 
 /// The models of the pose engine, from `data_folder` (empty: the installed one): the prior of
-/// poses, and in the paper's mode the networks of the horizontal COM. One that is missing is an
-/// error that names it: nothing else takes its place. Only the arms' model may be missing; Wiimotes
-/// are not followed then, and said so.
+/// poses, and the networks of the horizontal COM, which only paper mode needs. One that is missing
+/// is an error that names it: nothing else takes its place. Only the arms' models may be missing;
+/// Wiimotes are not followed then, and said so.
 Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
                                               reconstruction::Mode mode);
 
 /// The inputs of the pose engine as they took effect, for recordings.
-v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject);
+v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject,
+                                const reconstruction::Options& options, bool same_person = false);
 /// The other way round, for replays.
 PoseApplied PoseAppliedFrom(const v1::AppliedInput& message);
 Subject SubjectFrom(const v1::AppliedInput& message);
+/// `options` with the mode that they were for, and what it left out. InvalidData for one that this
+/// program does not know.
+Result<reconstruction::Options> OptionsFrom(const v1::AppliedInput& message,
+                                            reconstruction::Options options);
 
 }  // namespace footing::pose_service

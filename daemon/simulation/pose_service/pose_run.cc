@@ -109,6 +109,7 @@ PoseRun::PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExc
 void PoseRun::ApplyRequests(const PoseInputs& inputs) {
   std::unique_ptr<SubjectRun> next;
   while (subject_->number != inputs.subject_number && subjects_->next.Pop(next)) {
+    if (next->same_person) next->reconstruction.ContinueFrom(subject_->reconstruction);
     subject_.swap(next);
     subjects_->done.Push(std::move(next));  // It has space for all that are on their way.
     calibrate_number_ = inputs.calibrate_number;

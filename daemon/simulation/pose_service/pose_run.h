@@ -43,6 +43,8 @@ struct SubjectRun {
   /// The same person in insoles; none where the mode or the lag has none.
   std::optional<reconstruction::InsoleWalk> walk;
   TPoseHands t_pose;
+  /// Another mode for the person before, whose T-pose holds.
+  bool same_person = false;
 };
 
 /// The subject's reconstruction, and the one in insoles where the options have it. InvalidData when

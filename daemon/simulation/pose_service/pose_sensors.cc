@@ -24,8 +24,14 @@ constexpr double kLongestStepS = 0.1;  // Between two ticks.
 
 }  // namespace
 
-PoseArms::PoseArms(std::optional<arms::ArmModel> model)
-    : model_(std::move(model)), tracker_(model_) {}
+PoseArms::PoseArms(std::optional<arms::ArmModel> model,
+                   std::optional<arm_network::ArmNetwork> network)
+    : model_(std::move(model)), network_(std::move(network)), tracker_(model_, network_) {}
+
+void PoseArms::UseNetwork(bool use) {
+  uses_network_ = use;
+  tracker_.UseNetwork(use);
+}
 
 void PoseArms::Bind(std::size_t side, std::optional<std::uint32_t> device, arms::Place place) {
   Device& bound = devices_[side][static_cast<std::size_t>(place)];
@@ -70,7 +76,8 @@ void PoseArms::Follow(bool calibrated, double calibration_progress) {
   if (calibrated && !was_calibrated) {
     tracker_.Align();
   } else if (!calibrated && was_calibrated) {
-    tracker_ = arms::ArmTracker(model_);
+    tracker_ = arms::ArmTracker(model_, network_);
+    tracker_.UseNetwork(uses_network_);
   } else if (!calibrated && (calibration_progress <= 0 || calibration_progress < before)) {
     tracker_.BeginTPose();
   }
@@ -92,7 +99,8 @@ HandTrouble PoseArms::TroubleOf(std::size_t side, std::int64_t now_ns) const {
   const auto forearm = static_cast<std::size_t>(arms::Place::kForearm);
   HandTrouble trouble = HandTrouble::kNone;
   if (devices[fist].device) {
-    trouble = model_ ? TroubleOf(side, fist, now_ns) : HandTrouble::kNoModel;
+    const bool can = uses_network_ ? network_.has_value() : model_.has_value();
+    trouble = can ? TroubleOf(side, fist, now_ns) : HandTrouble::kNoModel;
     if (trouble == HandTrouble::kNone) return trouble;
   }
   if (!devices[upper].device && !devices[forearm].device) return trouble;
@@ -292,10 +300,11 @@ std::optional<std::uint32_t> DeviceWith(const rig::Follower& follower, DeviceRol
 }  // namespace
 
 PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
-                         std::optional<arms::ArmModel> arm)
+                         std::optional<arms::ArmModel> arm,
+                         std::optional<arm_network::ArmNetwork> paper_arm)
     : follower_(std::move(rig), stream::DrivingRoles(stream::UserInterface::kBoards)),
       out_(out),
-      arms_(std::move(arm)) {
+      arms_(std::move(arm), std::move(paper_arm)) {
   Bind();
 }
 

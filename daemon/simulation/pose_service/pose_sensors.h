@@ -29,8 +29,12 @@ class PoseArms {
  public:
   static constexpr double kTimeoutS = 0.2;
 
-  /// Without a model there is no estimate from the fists.
-  explicit PoseArms(std::optional<arms::ArmModel> model);
+  /// Without a model there is no estimate from the fists, without a network none in paper mode.
+  explicit PoseArms(std::optional<arms::ArmModel> model,
+                    std::optional<arm_network::ArmNetwork> network = std::nullopt);
+
+  /// Whether the network of paper mode says how arms are held, or the regression.
+  void UseNetwork(bool use);
 
   /// Whether the rig has a Wiimote there, and which device it is.
   void Bind(std::size_t side, std::optional<std::uint32_t> device,
@@ -54,6 +58,8 @@ class PoseArms {
   HandTrouble TroubleOf(std::size_t side, std::int64_t now_ns) const;
 
   std::optional<arms::ArmModel> model_;
+  std::optional<arm_network::ArmNetwork> network_;
+  bool uses_network_ = false;
   arms::ArmTracker tracker_;
   std::array<std::array<Device, arms::kPlaces>, arms::kArms> devices_{};  ///< By arms::Place.
   bool calibrated_ = false;
@@ -137,7 +143,8 @@ class PoseSensors {
   /// `rig` empty: the first rig with a board or an insole. Without an arm model Wiimotes are
   /// not used.
   PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
-              std::optional<arms::ArmModel> arm = std::nullopt);
+              std::optional<arms::ArmModel> arm = std::nullopt,
+              std::optional<arm_network::ArmNetwork> paper_arm = std::nullopt);
 
   /// Takes in a tick and hands the inputs over.
   void OnTick(const v1::Tick& message, std::int64_t now_ns);
@@ -149,6 +156,10 @@ class PoseSensors {
   void Calibrate();
   /// Number of the subject that the next inputs are for.
   void TakeSubject(std::uint64_t number);
+  /// Mode of the engine: arms with a Wiimote in the fist are estimated as it has it.
+  void TakeMode(reconstruction::Mode mode) {
+    arms_.UseNetwork(mode == reconstruction::Mode::kPaper);
+  }
 
   const std::string& rig() const { return follower_.rig(); }
   const PoseInputs& inputs() const { return inputs_; }

@@ -97,10 +97,11 @@ std::string HandsSource(const PoseFrame& frame, const std::string& tracker) {
   return frame.input.arms_valid[0] || frame.input.arms_valid[1] ? "wiimote" : "";
 }
 
-void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& mode,
+void SetBody(const PoseFrame& frame, const Subject& subject, const reconstruction::Options& options,
              const std::string& tracker, v1::BodyState& body) {
   body.set_subject(subject.code);
-  body.set_mode(mode);
+  body.set_mode(reconstruction::NameOf(options.mode));
+  for (const std::string& part : reconstruction::LeftOut(options)) body.add_left_out(part);
   body.set_calibrated(frame.t_pose.complete);
   body.set_calibration_progress(frame.t_pose.progress);
   body.set_calibration_restarts(frame.t_pose.restarts);
@@ -128,8 +129,9 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& 
 }  // namespace
 
 v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subject,
-                                    const std::string& mode, const std::string& world,
-                                    const std::string& rig, const std::string& tracker) {
+                                    const reconstruction::Options& options,
+                                    const std::string& world, const std::string& rig,
+                                    const std::string& tracker) {
   v1::CharacterFrame message = serving::MakeFrame({.step = frame.step,
                                                    .time_s = frame.time_s,
                                                    .overruns = frame.overruns,
@@ -147,7 +149,7 @@ v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subje
     *character.add_contacts() = ToProto(
         stream::Contact{foot.contact, foot.cop_valid ? foot.p_WP_m : foot.p_WF_m, foot.load_n});
   }
-  SetBody(frame, subject, mode, tracker, *character.mutable_body());
+  SetBody(frame, subject, options, tracker, *character.mutable_body());
   return message;
 }
 
@@ -370,7 +372,9 @@ std::string HandText(HandTrouble trouble, const std::string& side) {
     case HandTrouble::kNone:
       return "the " + side + " hand is not seen";
     case HandTrouble::kNoModel:
-      return "the " + side + " Wiimote is not followed: there is no arm.fmodel (docs/models.md)";
+      return "the " + side +
+             " Wiimote is not followed: there is no arm.fmodel, or in paper mode no "
+             "arm_paper.fmodel (docs/models.md)";
     case HandTrouble::kNoGyroscope:
       return "the " + side + " Wiimote reports no rotation: is a MotionPlus in it?";
     case HandTrouble::kSilent:

@@ -115,11 +115,12 @@ using subject::Subject;
 /// 22.5 kg/m^2 until the T-pose has weighed it.
 Result<body::Body> MakeSubjectBody(const Subject& subject);
 
-/// From a frame of the pose engine to the message of the protocol. `mode` is "best" or "paper",
-/// `tracker` the name of who tracks the hands.
+/// From a frame of the pose engine to the message of the protocol. `options`: the
+/// mode, `tracker` the name of who tracks the hands.
 v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subject,
-                                    const std::string& mode, const std::string& world,
-                                    const std::string& rig, const std::string& tracker = "");
+                                    const reconstruction::Options& options,
+                                    const std::string& world, const std::string& rig,
+                                    const std::string& tracker = "");
 
 /// One link a joint; its size is that of a ball about the joint that the limbs end in.
 stream::Skeleton ToSkeleton(const body::Body& body);

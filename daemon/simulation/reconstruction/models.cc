@@ -347,6 +347,13 @@ Result<void> ReadArm(const NamedModel& named, Models& models) {
   return {};
 }
 
+Result<void> ReadPaperArm(const NamedModel& named, Models& models) {
+  auto arm = arm_network::MakeArmNetwork(named.model, named.origin);
+  if (!arm) return arm.error();
+  models.paper_arm = *std::move(arm);
+  return {};
+}
+
 }  // namespace
 
 Result<Models> MakeModels(const std::vector<NamedModel>& models) {
@@ -361,14 +368,15 @@ Result<Models> MakeModels(const std::vector<NamedModel>& models) {
     if ((kind == "basis" || kind == "pose") && !made.dofs.empty()) {
       return UsageError(named.origin + ": a pose model brings its basis; give one of the two");
     }
-    const auto read =
-        kind == "basis"  ? ReadPostures(named, made)
-        : kind == "pose" ? ReadRegression(named, made)
-        : kind == "com"  ? ReadNetworks(named, made)
-        : kind == "arm"
-            ? ReadArm(named, made)
-            : Result<void>(InvalidData(named.origin + ": a model of kind " + kind +
-                                       "; the pose engine takes basis, pose, com and arm"));
+    const auto read = kind == "basis"  ? ReadPostures(named, made)
+                      : kind == "pose" ? ReadRegression(named, made)
+                      : kind == "com"  ? ReadNetworks(named, made)
+                      : kind == "arm"  ? ReadArm(named, made)
+                      : kind == "arm_paper"
+                          ? ReadPaperArm(named, made)
+                          : Result<void>(InvalidData(
+                                named.origin + ": a model of kind " + kind +
+                                "; the pose engine takes basis, pose, com, arm and arm_paper"));
     if (!read) return read.error();
   }
   if (made.dofs.empty()) {

@@ -12,6 +12,7 @@
 #include "daemon/simulation/cascade/network.h"
 #include "daemon/simulation/momentum/estimate.h"
 #include "daemon/simulation/pose/arm_model.h"
+#include "daemon/simulation/pose/arm_network.h"
 #include "daemon/simulation/pose/gauss_newton.h"
 
 namespace footing::reconstruction {
@@ -130,9 +131,12 @@ struct Models {
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
   /// For hands that hold a Wiimote, where there is one.
   std::optional<arms::ArmModel> arm;
+  /// The same for paper mode (section 5.2).
+  std::optional<arm_network::ArmNetwork> paper_arm;
 };
 
-/// At most one model of each kind: "basis" or "pose" is necessary, "com" and "arm" are not. Errors
+/// At most one model of each kind: "basis" or "pose" is necessary, "com", "arm" and
+/// "arm_paper" are not. Errors
 /// name the file.
 Result<Models> MakeModels(const std::vector<NamedModel>& models);
 

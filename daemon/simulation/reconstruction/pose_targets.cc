@@ -151,7 +151,7 @@ void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& po
 }
 
 void PaperEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
-  estimator_.emplace(momentum::PaperConfig{}, model_->subject, pose, step_s_);
+  estimator_.emplace(constants_.momentum, model_->subject, pose, step_s_);
   if (model_->horizontal) horizontal_.emplace(*model_->horizontal, pose, step_s_);
   origin_m_ = origin_m;
 }
@@ -254,6 +254,9 @@ namespace {
 
 pose::FibonacciOptions SearchOptions(const Options& options) {
   pose::FibonacciOptions search;
+  search.evaluations = options.paper.evaluations;
+  search.span = options.paper.span;
+  search.reach = options.paper.reach;
   search.frame_s = options.step_s();
   return search;
 }
@@ -289,11 +292,11 @@ void PaperMode::Advance(const Inputs& inputs, const Truth& truth, Output& output
 
 void PaperMode::SetTargets(const Measurement& now, const Truth& truth, double mass_kg) {
   Clear(state_.targets);
-  AddPaperHandTargets(*state_.model, now, state_.targets);
+  AddPaperHandTargets(*state_.model, now, state_.options.paper, state_.targets);
   if (truth.feet) {
     AddFeetTargets(*state_.model, *truth.feet, state_.targets);
   } else {
-    AddPaperFeetTargets(*state_.model, now, state_.targets);
+    AddPaperFeetTargets(*state_.model, now, state_.options.paper, state_.targets);
   }
   ShowFeet(*state_.model, state_.targets, state_.shown_feet);
   SetPaperMomentumTargets(*state_.model, now, mass_kg, state_.options, state_.targets);
@@ -303,9 +306,6 @@ void PaperMode::SetTargets(const Measurement& now, const Truth& truth, double ma
 
 namespace {
 
-constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
-constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 15;
-constexpr double kPaperArmSdRad = 0.2;
 constexpr double kTrueFootSdM = 0.015, kTrueComSdM = 0.01, kTrueAngularSd = 1;
 // One sweep finds no pose to match a change of momentum exactly: held closer, it stays behind.
 constexpr double kTrueAngularSearchSd = 10;
@@ -368,9 +368,9 @@ void AddHandTargets(const SubjectModel& model, const Measurement& then, const Be
 }
 
 void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
-                         pose::PoseTargets& targets) {
-  const auto arm_sd_m = [](double length_m, const Eigen::Vector3d&) {
-    return Eigen::Vector3d(Eigen::Vector3d::Constant(length_m * kPaperArmSdRad));
+                         const PaperConstants& constants, pose::PoseTargets& targets) {
+  const auto arm_sd_m = [&](double length_m, const Eigen::Vector3d&) {
+    return Eigen::Vector3d(Eigen::Vector3d::Constant(length_m * constants.arm_sd_rad));
   };
   for (std::size_t side = 0; side < kHands; ++side) {
     const HandInput& hand = then.hands[side];
@@ -379,7 +379,8 @@ void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
       continue;
     }
     const body::Point& fist = model.fists[side];
-    targets.Add({fist.joint, fist.p_J_m, hand.p_W_m, Eigen::Vector3d::Constant(kPaperHandSdM)});
+    targets.Add(
+        {fist.joint, fist.p_J_m, hand.p_W_m, Eigen::Vector3d::Constant(constants.hand_sd_m)});
   }
 }
 
@@ -406,9 +407,9 @@ void AddFeetTargets(const SubjectModel& model, const Measurement& then, const Fo
 }
 
 void AddPaperFeetTargets(const SubjectModel& model, const Measurement& then,
-                         pose::PoseTargets& targets) {
+                         const PaperConstants& constants, pose::PoseTargets& targets) {
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
-    AddPaperFootTargets(model.feet[f], then.momentum.feet[f], kPaperFootSdM, targets);
+    AddPaperFootTargets(model.feet[f], then.momentum.feet[f], constants.foot_sd_m, targets);
   }
 }
 
@@ -447,10 +448,11 @@ void SetPaperMomentumTargets(const SubjectModel& model, const Measurement& then,
                              const Options& options, pose::PoseTargets& targets) {
   targets.has_com = options.use_momentum;
   targets.com_W_m = then.momentum.p_WC_m;
-  targets.com_sd_m << kPaperComSdM, kPaperComSdM, kPaperHeightSdM;
+  const PaperConstants& constants = options.paper;
+  targets.com_sd_m << constants.com_sd_m, constants.com_sd_m, constants.height_sd_m;
   targets.has_angular = options.use_angular_momentum;
   targets.angular_W = AngularTarget(model, then, mass_kg);
-  targets.angular_sd.setConstant(kPaperAngularSd);
+  targets.angular_sd.setConstant(constants.angular_sd);
 }
 
 void SetMomentumTargets(const std::optional<WalkPrior::Com>& com, pose::PoseTargets& targets) {

@@ -90,13 +90,14 @@ class PaperEstimate {
  public:
   /// `model` must outlive it.
   PaperEstimate(const SubjectModel& model, const Options& options)
-      : model_(&model), step_s_(options.step_s()) {}
+      : model_(&model), constants_(options.paper), step_s_(options.step_s()) {}
 
   void Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m);
   Measurement Advance(const Inputs& inputs);
 
  private:
   const SubjectModel* model_;
+  PaperConstants constants_;
   double step_s_;
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   std::optional<momentum::PaperEstimator> estimator_;      ///< From Start on.
@@ -191,7 +192,7 @@ void AddHandTargets(const SubjectModel& model, const Measurement& then, const Be
                     pose::PoseTargets& targets);
 /// The same with the fixed deviations of paper mode.
 void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
-                         pose::PoseTargets& targets);
+                         const PaperConstants& constants, pose::PoseTargets& targets);
 
 /// How the belt shows the pelvis turned, as directions that were up and forward in the T-pose: the
 /// way up has the deviation of the inclination, the way forward in level directions that of the
@@ -203,7 +204,7 @@ void AddBeltTargets(const SubjectModel& model, const arms::HandState& belt,
 void AddFeetTargets(const SubjectModel& model, const Measurement& then, const FootSpread& spread,
                     pose::PoseTargets& targets);
 void AddPaperFeetTargets(const SubjectModel& model, const Measurement& then,
-                         pose::PoseTargets& targets);
+                         const PaperConstants& constants, pose::PoseTargets& targets);
 /// Both feet where a walk has them, or where they truly are.
 void AddFeetTargets(const SubjectModel& model, const std::array<FootPrior, momentum::kFeet>& feet,
                     pose::PoseTargets& targets);

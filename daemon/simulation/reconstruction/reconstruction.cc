@@ -29,6 +29,14 @@ void Reconstruction::Recalibrate() {
   ReportTPose(*model_, options_, output_);
 }
 
+void Reconstruction::ContinueFrom(const Reconstruction& other) {
+  if (!other.output_.calibrated) return;
+  calibration_ = other.calibration_;
+  output_ = other.output_;
+  output_.lag_s = options_.lag_steps() * options_.step_s();
+  std::visit([&](auto& mode) { mode.Start(calibration_.result()); }, mode_);
+}
+
 const Output& Reconstruction::Advance(const Inputs& inputs, const Truth& truth) {
   if (std::isfinite(inputs.loads.time_s)) output_.time_s = inputs.loads.time_s;
   if (output_.calibrated) {

@@ -31,6 +31,9 @@ class Reconstruction {
   const Output& Advance(const Inputs& inputs) { return Advance(inputs, Truth{}); }
   /// For evaluation: with parts of the truth in place of their estimates.
   const Output& Advance(const Inputs& inputs, const Truth& truth);
+  /// Takes over the T-pose of the same person, if it is complete: the momentum starts as it was
+  /// then. No allocation.
+  void ContinueFrom(const Reconstruction& other);
   /// Forgets the T-pose.
   void Recalibrate();
 

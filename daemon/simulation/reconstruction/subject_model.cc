@@ -104,6 +104,51 @@ constexpr int kPostureIterations = 1;
 
 int Options::lag_steps() const { return static_cast<int>(std::lround(lag_s * rate_hz)); }
 
+Result<Mode> ModeNamed(const std::string& name) {
+  if (name == "best") return Mode::kBest;
+  if (name == "paper") return Mode::kPaper;
+  return UsageError("unknown mode " + name + "; there are: best, paper");
+}
+
+std::string NameOf(Mode mode) { return mode == Mode::kPaper ? "paper" : "best"; }
+
+namespace {
+
+struct Part {
+  const char* name;
+  bool Options::*used;
+};
+
+constexpr std::array kParts{
+    Part{"angular_momentum", &Options::use_angular_momentum},
+    Part{"momentum", &Options::use_momentum}, Part{"posture", &Options::use_posture},
+    Part{"basis", &Options::use_basis}, Part{"cleanup", &Options::clean_up}};
+
+}  // namespace
+
+Result<void> LeaveOut(const std::vector<std::string>& parts, Options& options) {
+  for (const Part& part : kParts) options.*part.used = true;
+  for (const std::string& name : parts) {
+    const auto found = std::find_if(kParts.begin(), kParts.end(),
+                                    [&](const Part& part) { return part.name == name; });
+    if (found == kParts.end()) {
+      std::string names;
+      for (const Part& part : kParts) names += (names.empty() ? "" : ", ") + std::string(part.name);
+      return UsageError("unknown part " + name + " of the reconstruction; there are: " + names);
+    }
+    options.*found->used = false;
+  }
+  return {};
+}
+
+std::vector<std::string> LeftOut(const Options& options) {
+  std::vector<std::string> names;
+  for (const Part& part : kParts) {
+    if (!(options.*part.used)) names.emplace_back(part.name);
+  }
+  return names;
+}
+
 Result<void> CheckOptions(const Options& options) {
   if (!(options.rate_hz >= 20 && options.rate_hz <= 240)) {
     return UsageError("pose: a rate of " + std::to_string(options.rate_hz) +
@@ -147,7 +192,6 @@ pose::GaussNewtonOptions PostureSolverOptions(const Options& options) {
 namespace {
 
 // Share of the variance, in the components that paper mode searches.
-constexpr double kPaperVarianceShare = 0.99;
 
 /// A landmark's joint on one side and the joints below it.
 std::vector<std::size_t> JointsFrom(const body::Body& body, body::Landmark left, int side) {
@@ -226,7 +270,7 @@ Result<SubjectModel> PaperSubjectModel(const body::Body& body, const Models& mod
                                        const Options& options) {
   auto model = CommonSubjectModel(body, models);
   if (!model) return model;
-  model->basis = options.use_basis ? pose::Leading(model->basis, kPaperVarianceShare)
+  model->basis = options.use_basis ? pose::Leading(model->basis, options.paper.variance_share)
                                    : pose::Unconnected(model->basis);
   model->horizontal = models.horizontal;
   return model;

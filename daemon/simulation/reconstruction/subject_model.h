@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,6 +17,7 @@
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 #include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/momentum/paper_estimator.h"
 #include "daemon/simulation/pose/arm_model.h"
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/pose/hand_attitude.h"
@@ -156,6 +158,22 @@ struct BestConstants {
   double aloft_time_s = 0.2;
 };
 
+/// Constants of paper mode that the paper does not give; how each was chosen: docs/pose.md. The
+/// terms of equation (6) have different units: each is divided by its standard deviation.
+struct PaperConstants {
+  momentum::PaperConfig momentum;
+  double variance_share = 0.99;  ///< Share of the recorded poses that the components hold.
+  int evaluations = pose::FibonacciOptions{}.evaluations;
+  double span = pose::FibonacciOptions{}.span;
+  double reach = pose::FibonacciOptions{}.reach;
+  double hand_sd_m = 0.016;
+  double arm_sd_rad = 0.2;
+  double foot_sd_m = 0.02;
+  double com_sd_m = 0.02;
+  double height_sd_m = 0.05;
+  double angular_sd = 30;  ///< kg m^2/s.
+};
+
 /// Options of a reconstruction.
 struct Options {
   Mode mode = Mode::kBest;
@@ -168,10 +186,19 @@ struct Options {
   bool clean_up = true;
   bool use_basis = true;
   BestConstants best;
+  PaperConstants paper;
 
   double step_s() const { return 1 / rate_hz; }
   int lag_steps() const;
 };
+
+/// "best" or "paper"; a UsageError lists both.
+Result<Mode> ModeNamed(const std::string& name);
+std::string NameOf(Mode mode);
+/// Leaves exactly these parts out: angular_momentum, momentum, posture, basis, cleanup. A
+/// UsageError lists them.
+Result<void> LeaveOut(const std::vector<std::string>& parts, Options& options);
+std::vector<std::string> LeftOut(const Options& options);
 
 /// UsageError that names an option out of range.
 Result<void> CheckOptions(const Options& options);

@@ -5,6 +5,7 @@
 
 #include "common/base/units.h"
 #include "daemon/offline/learning/network.h"
+#include "daemon/simulation/pose/arm_tracker.h"
 
 namespace footing::arm_network {
 namespace {
@@ -52,8 +53,8 @@ Sequence Swing(double hz, double seconds) {
     frame.features.head<9>() = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(hand.data());
     const Eigen::AngleAxisd moved(hand * before.transpose());
     frame.angular_velocity_W_radps = moved.angle() * moved.axis() / sequence.step_s;
-    frame.angular_velocity_S_radps = hand.transpose() * frame.angular_velocity_W_radps;
-    frame.specific_force_S_mps2 = hand.transpose() * Vector3d(0, 0, kStandardGravityMps2);
+    frame.angular_velocity_H_radps = hand.transpose() * frame.angular_velocity_W_radps;
+    frame.specific_force_H_mps2 = hand.transpose() * Vector3d(0, 0, kStandardGravityMps2);
     before = hand;
     sequence.inputs.push_back(frame);
     sequence.truth.push_back(pose);
@@ -90,8 +91,46 @@ TEST(ArmNetwork, AResidualOnItsOwnEstimatesDividesASwingBetweenShoulderAndElbow)
             trained.network.network.weights().output_weights);
 }
 
+TrainingOptions QuickOptions() {
+  TrainingOptions options;
+  options.rounds = 2;
+  options.hidden_max = 2;
+  return options;
+}
+
+/// The left arm as a tracker with the network has it, after a T-pose and a second of turning.
+arms::ArmDirections Tracked(const ArmNetwork& network, int frames_a_reading) {
+  arms::ArmTracker tracker(std::nullopt, network);
+  tracker.UseNetwork(true);
+  const double reading_s = 1.0 / 60;
+  const auto add = [&](const Vector3d& turning) {
+    for (std::size_t arm = 0; arm < arms::kArms; ++arm)
+      tracker.Add(arm, {Vector3d(0, 0, kStandardGravityMps2), turning, false}, reading_s);
+  };
+  for (int i = 0; i < 120; ++i) add(Vector3d::Zero());
+  tracker.Align();
+  arms::ArmEstimate left;
+  for (int i = 0; i < 60; ++i) {
+    add({0, 0, 0.5});
+    for (int k = 0; k < frames_a_reading; ++k)
+      left = tracker.Advance(reading_s / frames_a_reading)[0];
+  }
+  EXPECT_TRUE(left.valid);
+  tracker.UseNetwork(false);
+  EXPECT_FALSE(tracker.Advance(reading_s)[0].valid) << "there is no regression";
+  return left.directions;
+}
+
+TEST(ArmNetwork, ATrackerRunsItAtItsOwnRate) {
+  const ArmNetwork network = Train(Kind::kPaper, {Swing(0.5, 20)}, QuickOptions(), 1).network;
+  const arms::ArmDirections at_60 = Tracked(network, 1), at_120 = Tracked(network, 2);
+  EXPECT_LT(arms::ShoulderError(at_60, at_120), 0.05);
+  EXPECT_TRUE(arms::Stacked(at_60).allFinite());
+  EXPECT_GT(arms::ShoulderError(at_60, arms::ArmDirections{}), 1e-3) << "it moved";
+}
+
 TEST(ArmNetwork, AModelFileKeepsIt) {
-  const Trained trained = Train(Kind::kPaper, {Swing(0.5, 10)}, PaperOptions(), 1);
+  const Trained trained = Train(Kind::kPaper, {Swing(0.5, 10)}, QuickOptions(), 1);
   model::Model model{.kind = KindName(Kind::kPaper), .provenance = {}, .tensors = {}};
   AppendTensors(trained.network, model);
   const auto read = MakeArmNetwork(model, "made.fmodel");

@@ -10,9 +10,9 @@ TEST(PoseRun, InsolesAreFollowedWhileTheyTellAndBoardsKnowThePersonWhenTheyStop)
   for (std::size_t i = 0; i < 400; ++i) {
     line.Wear(i);
     line.Step(i);
-    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+    ExpectFinite(ToCharacterFrame(line.frame, {}, {}, "boards", "one"));
   }
-  const auto message = ToCharacterFrame(line.frame, {}, "best", "boards", "one");
+  const auto message = ToCharacterFrame(line.frame, {}, {}, "boards", "one");
   EXPECT_EQ(message.characters(0).body().contact_source(), "insoles");
   EXPECT_TRUE(message.characters(0).body().feet_told(1));
   EXPECT_TRUE(line.frame.t_pose.complete);
@@ -61,7 +61,7 @@ TEST(PoseRun, InsolesThatFallSilentLeaveAPoseThatIsLessSureByTheSecond) {
   for (int second = 0; second < 2; ++second) {
     for (int i = 0; i < 60; ++i) {
       line.Quiet();
-      ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+      ExpectFinite(ToCharacterFrame(line.frame, {}, {}, "boards", "one"));
     }
     // The made person's poses, of which the basis knows, are all near each other.
     EXPECT_GT(line.frame.links.sd_m[ankle], 1.2 * sure_m) << second;

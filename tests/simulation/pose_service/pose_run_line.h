@@ -26,8 +26,16 @@ struct Line {
   }
 
   std::unique_ptr<SubjectRun> Subject(std::uint64_t number) const {
+    return InMode(number, made::Mode::kBest);
+  }
+  std::unique_ptr<SubjectRun> InMode(std::uint64_t number, made::Mode mode) const {
     made::Options options;
+    options.mode = mode;
     options.rate_hz = made::kMadeRateHz;
+    if (mode == made::Mode::kPaper) {
+      return std::make_unique<SubjectRun>(
+          number, made::Reconstruction::Create(person, models, options).value());
+    }
     return std::make_unique<SubjectRun>(
         SubjectRun{number, made::Reconstruction::Create(person, models, options).value(),
                    made::InsoleWalk::Create(person, models, options).value()});

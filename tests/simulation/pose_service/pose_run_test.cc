@@ -16,7 +16,7 @@ TEST(PoseRun, TakesTheTPoseAndThenPublishesTheWholeBody) {
   EXPECT_NEAR(line.frame.t_pose.progress, 2.0 / 5, 0.05);
   for (std::size_t i = 120; i < line.measured.size(); ++i) {
     line.Step(i);
-    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+    ExpectFinite(ToCharacterFrame(line.frame, {}, {}, "boards", "one"));
   }
   EXPECT_TRUE(line.frame.t_pose.complete);
   EXPECT_TRUE(line.frame.valid);
@@ -43,11 +43,11 @@ TEST(PoseRun, BoardsLostAndBackLeaveAFinitePose) {
   ASSERT_TRUE(line.frame.t_pose.complete);
   for (int i = 0; i < 180; ++i) {
     line.Quiet();
-    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+    ExpectFinite(ToCharacterFrame(line.frame, {}, {}, "boards", "one"));
   }
   for (std::size_t i = 0; i < 200; ++i) {
     line.Step(i);
-    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+    ExpectFinite(ToCharacterFrame(line.frame, {}, {}, "boards", "one"));
   }
   EXPECT_TRUE(line.frame.t_pose.complete) << "the same person is still there";
   EXPECT_TRUE(line.frame.input.feet_measured[0]);
@@ -118,6 +118,47 @@ TEST(PoseRun, TheNextSubjectHasNoStaleTPoseAndTheLastOneComesBackToBeFreed) {
   EXPECT_EQ(done->number, 1u);
 }
 
+TEST(PoseRun, AnotherModeKeepsTheTPose) {
+  Line line;
+  for (std::size_t i = 0; i < 400; ++i) line.Step(i);
+  ASSERT_TRUE(line.frame.t_pose.complete);
+  const double mass_kg = line.frame.t_pose.mass_kg;
+  for (const auto mode : {made::Mode::kPaper, made::Mode::kBest}) {
+    auto next = line.InMode(line.told.subject_number + 1, mode);
+    next->same_person = true;
+    ASSERT_TRUE(line.subjects.next.Push(std::move(next)));
+    ++line.told.subject_number;
+    line.Step(400);
+    EXPECT_EQ(line.frame.subject_number, line.told.subject_number);
+    EXPECT_TRUE(line.frame.t_pose.complete);
+    EXPECT_EQ(line.frame.t_pose.mass_kg, mass_kg);
+    EXPECT_TRUE(line.frame.valid);
+    ExpectFinite(ToCharacterFrame(line.frame, {}, {}, "boards", "one"));
+    std::unique_ptr<SubjectRun> done;
+    ASSERT_TRUE(line.subjects.done.Pop(done));
+  }
+}
+
+TEST(PoseRun, ARecordedInputHasItsMode) {
+  made::Options options;
+  options.mode = made::Mode::kPaper;
+  ASSERT_TRUE(made::LeaveOut({"basis", "angular_momentum"}, options).ok());
+  const auto message = ToAppliedInput({}, {}, options, true);
+  EXPECT_TRUE(message.pose().same_person());
+  const auto back = OptionsFrom(message, {});
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back->mode, made::Mode::kPaper);
+  EXPECT_EQ(made::LeftOut(*back), (std::vector<std::string>{"angular_momentum", "basis"}));
+  auto old = message;
+  old.mutable_pose()->clear_mode();
+  EXPECT_EQ(OptionsFrom(old, {})->mode, made::Mode::kBest) << "recorded before modes were";
+  auto other = message;
+  other.mutable_pose()->add_left_out("gravity");
+  const auto refused = OptionsFrom(other, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("unknown part gravity"), std::string::npos);
+}
+
 TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
   Line line;
   std::vector<PoseApplied> applied;
@@ -136,7 +177,7 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
     line.run.StepOnSimThread(line.inputs, line.frame);
     for (int k = 0; k < line.frame.applied_count; ++k) {
       const auto message =
-          ToAppliedInput(line.frame.applied[static_cast<std::size_t>(k)], {"p1", 1.75, 70, 0});
+          ToAppliedInput(line.frame.applied[static_cast<std::size_t>(k)], {"p1", 1.75, 70, 0}, {});
       EXPECT_EQ(SubjectFrom(message).code, "p1");
       applied.push_back(PoseAppliedFrom(message));
     }
