@@ -5,6 +5,7 @@
 #include "clients/camera/video_port.h"
 #include "common/cli/cli.h"
 #include "common/net/address.h"
+#include "common/net/device_link.h"
 #include "common/runtime/log.h"
 
 namespace {
@@ -93,8 +94,7 @@ int main(int argc, char** argv) {
   Addresses addresses;
   int exit_code = 0;
   AddCommandLine(*app, line);
-  app->add_option("--to", addresses.to,
-                  "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app->add_option("--to", addresses.to, device_link::kToHelp);
   app->add_option("--sensor", addresses.sensor,
                   "Address of footingd, where the lights of the camera file are switched on");
   app->add_option("--preview", addresses.preview,

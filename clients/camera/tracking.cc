@@ -42,6 +42,7 @@ class Tracking {
         io_(1),
         look_(io_),
         link_(io_, {.to = options.to,
+                    .client_name = "footing-camera",
                     .max_queued_frames = kMaxQueuedFrames,
                     .on_open = [this] { log::Info("sending hands to " + options_.to.Text()); }}),
         finder_(options.camera.lens, options.camera.Targets(), options.camera.settings),
@@ -161,7 +162,7 @@ class Tracking {
 
   /// Not by a signal: everything that was to be done is done.
   void EndInTime(Result<void> end) {
-    if (!link_.was_open()) report_.sent_on = device_link::NoFootingd(options_.to);
+    if (!link_.was_open()) report_.sent_on = link_.NeverOpen();
     End(std::move(end));
   }
 

@@ -12,6 +12,7 @@
 #include "common/base/units.h"
 #include "common/cli/cli.h"
 #include "common/net/address.h"
+#include "common/net/device_link.h"
 #include "common/net/socket.h"
 #include "common/runtime/files.h"
 #include "common/runtime/log.h"
@@ -121,8 +122,7 @@ std::function<void()> AddReceiver(CLI::App& app, Shared& shared) {
   flags->dialect.Add(app);
   app.add_option("--listen", flags->listen,
                  "UDP address to receive on, HOST:PORT; 0.0.0.0:7110 takes every host's packets");
-  app.add_option("--to", flags->to,
-                 "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app.add_option("--to", flags->to, device_link::kToHelp);
   app.add_option(
       "--web", flags->web,
       "Serve a web page that tracks a person with this computer's webcam, 127.0.0.1:PORT");

@@ -40,11 +40,13 @@ class Receiver {
   explicit Receiver(const ReceiverOptions& options)
       : options_(options), tracker_(options.tracker), socket_(io_), flush_(io_) {
     if (!options.to) return;
-    link_.emplace(io_,
-                  device_link::Options{
-                      .to = *options.to, .max_queued_frames = kMaxQueuedFrames, .on_open = [this] {
-                        log::Info("connected to footingd at " + options_.to->Text());
-                      }});
+    link_.emplace(
+        io_, device_link::Options{.to = *options.to,
+                                  .client_name = "footing-skeleton",
+                                  .max_queued_frames = kMaxQueuedFrames,
+                                  .on_open = [this] {
+                                    log::Info("connected to footingd at " + options_.to->Text());
+                                  }});
   }
 
   Result<Reception> Run() {
@@ -66,7 +68,7 @@ class Receiver {
     began_ns_ = clock::MonotonicNs();
     began_cpu_ns_ = clock::ThreadCpuNs();
     end_.After(options_.seconds, [this] {
-      if (link_ && !link_->was_open()) published_ = device_link::NoFootingd(*options_.to);
+      if (link_ && !link_->was_open()) published_ = link_->NeverOpen();
       End();
     });
     ReceiveLater();

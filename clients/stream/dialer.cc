@@ -406,6 +406,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         fresh_sources_(std::move(plan.feeds)),
         silences_(std::move(plan.silences)),
         link_(io, {.to = options_.to,
+                   .client_name = "footing-stream",
                    .on_open = [this] { OnOpen(); },
                    .on_message = [this](const v1::DeviceEnvelope& message) { OnMessage(message); },
                    .on_refused = [this](const auto& message) { refused_.insert(message.slot()); },
@@ -425,12 +426,12 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     link_.Stop(reason);
   }
 
-  bool has_attached() const { return has_attached_; }
+  bool has_attached() const { return link_.was_open(); }
+  Error NeverAttached() const { return link_.NeverOpen(); }
   bool all_refused() const { return !devices_.empty() && refused_.size() >= devices_.size(); }
 
  private:
   void OnOpen() {
-    has_attached_ = true;
     refused_.clear();
     const std::string what = devices_.empty()
                                  ? std::to_string(fresh_sources_.size()) + " simulated sources"
@@ -632,7 +633,6 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   std::set<std::uint32_t> refused_;  ///< Slots, on the present connection.
   device_link::DeviceLink link_;
   std::int64_t start_ns_ = 0;
-  bool has_attached_ = false;
   bool stopped_ = false;
   bool ended_ = false;
 };
@@ -646,6 +646,7 @@ Dialer::~Dialer() = default;
 
 void Dialer::Start() { implementation_->Dial(); }
 bool Dialer::has_attached() const { return implementation_->has_attached(); }
+Error Dialer::NeverAttached() const { return implementation_->NeverAttached(); }
 bool Dialer::all_refused() const { return implementation_->all_refused(); }
 void Dialer::Stop(const std::string& reason) { implementation_->Stop(reason); }
 

@@ -198,6 +198,8 @@ class Dialer {
   void Stop(const std::string& reason);
   /// Whether footingd has been there at any time.
   bool has_attached() const;
+  /// Why it has not been, for a program that has waited in vain.
+  Error NeverAttached() const;
   /// Whether footingd has refused every device, on the present or the last connection.
   bool all_refused() const;
 

@@ -56,7 +56,7 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
     return cli::Report(Failure("footingd refused every device; its reasons are above"));
   }
   if (came_in_time) return 0;
-  return cli::Report(device_link::NoFootingd(*to));
+  return cli::Report(dialer->NeverAttached());
 }
 
 int RunPlayer(const std::string& simulation, const stream_client::Common& common) {
@@ -92,8 +92,7 @@ int RunRehearse(const stream_client::RehearseOptions& options,
 }
 
 void AddCommon(CLI::App& app, stream_client::Common& common) {
-  app.add_option("--to", common.to,
-                 "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app.add_option("--to", common.to, device_link::kToHelp);
   app.add_option("--seed", common.seed, "Seed of calibrations, noise and link");
   app.add_option("--link", common.link, "Link model: ideal, good or poor");
   app.add_option("--rate-scale", common.rate_scale, "Ratio of the devices' clock rates to nominal")
@@ -136,7 +135,8 @@ constexpr char kExamples[] =
     "  footing-stream runner &     # the terrain game's two players, see footing-game\n"
     "  footing-stream builder\n"
     "  footing-stream rehearse     # performs what footing-ctl setup asks for in another terminal\n"
-    "  footing-stream replay walk.mcap\n";
+    "  footing-stream replay walk.mcap\n"
+    "  FOOTING_TOKEN_FILE=token footing-stream user --to tls:192.168.1.5:7432    # another host\n";
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "common/net/client.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "common/net/clock_offset.h"
 #include "common/net/framing.h"
 #include "common/net/known_servers.h"
+#include "common/net/limits.h"
 #include "common/net/socket.h"
 #include "common/net/tls_context.h"
 #include "common/runtime/clock.h"
@@ -46,6 +48,22 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     wish_.reset();
     why_ = "the client was stopped";
     commands_.Fail(why_);
+  }
+
+  void Finish(const std::string& reason) {
+    started_ = subscribed_ = false;
+    ++attempt_;
+    redial_.cancel();
+    pulse_.cancel();
+    Break(reason);
+  }
+
+  bool SendDevice(const v1::DeviceEnvelope& device) {
+    const bool short_enough = device.ByteSizeLong() <= kMaxDeviceBytes;
+    if (!subscribed_ || !connection_ || !short_enough) return false;
+    v1::Envelope message;
+    *message.mutable_device() = device;
+    return connection_->Send(message.SerializeAsString());
   }
 
   void Send(v1::Command command, const PendingCommands::Done& done) {
@@ -90,7 +108,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   void OnConnected(Socket socket) {
     const auto hello = MakeHello(options_);
     if (!hello) return Retry(LinkState::kRefused, hello.error().message);
-    FramedLimits limits{.max_in_bytes = options_.max_message_bytes};
+    FramedLimits limits{.max_in_bytes = options_.max_message_bytes,
+                        .max_queued_frames = options_.max_queued_frames};
     FramedHandlers handlers;
     // Each keeps this alive while it is called: a handler may destroy the client.
     handlers.on_frame = [weak = weak_from_this()](std::string_view payload) {
@@ -141,6 +160,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
         return Call(handlers_.on_notice, message.notice());
       case v1::Envelope::kSubscribed:
         return OnSubscribed();
+      case v1::Envelope::kDevice:
+        return Call(handlers_.on_device, message.device());
       case v1::Envelope::kRefused:
         close_ = {true, options_.address.Text() + " refused: " + message.refused().message()};
         return Call(handlers_.on_refused, message.refused());
@@ -155,10 +176,21 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   void OnWelcome(const v1::Welcome& welcome) {
     probes_.OnWelcome(welcome.epoch() != server_.epoch);  // Perhaps another host.
     server_.name = welcome.server_id() + " " + welcome.version();
+    if (options_.attaches_devices) return OnDevicesWelcome(welcome);
     wish_ = MakeSubscribe(options_, welcome.epoch(), server_.last_epoch, server_.last_sequence);
     server_.epoch = welcome.epoch();
     SendPing();
     Call(handlers_.on_welcome, welcome);
+  }
+
+  void OnDevicesWelcome(const v1::Welcome& welcome) {
+    Call(handlers_.on_welcome, welcome);
+    const auto& can = welcome.capabilities();
+    if (std::find(can.begin(), can.end(), "devices") != can.end()) return OnSubscribed();
+    close_ = {true, options_.address.Text() + " is " + server_.name +
+                        ", which takes no devices of other hosts; start footingd with --source "
+                        "stream:tls:HOST:PORT"};
+    Break(close_.text);
   }
 
   void Subscribe() { SendMessage(*std::exchange(wish_, std::nullopt)); }
@@ -285,6 +317,10 @@ void Client::Start() { implementation_->Start(); }
 void Client::Stop() { implementation_->Stop(); }
 void Client::Send(v1::Command command, std::function<void(const v1::CommandResult&)> done) {
   implementation_->Send(std::move(command), std::move(done));
+}
+void Client::Finish(const std::string& reason) { implementation_->Finish(reason); }
+bool Client::SendDevice(const v1::DeviceEnvelope& message) {
+  return implementation_->SendDevice(message);
 }
 void Client::Refill(std::uint64_t from_sequence, std::uint64_t to_sequence) {
   implementation_->Refill(from_sequence, to_sequence);

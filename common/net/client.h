@@ -34,7 +34,10 @@ struct ClientOptions {
   v1::QueuePolicy policy = v1::QUEUE_POLICY_DROP_OLDEST;
   std::uint32_t queue_ticks = 256;
   bool from_ring_start = false;  ///< First everything that the server's ring still holds.
+  /// Subscribes to nothing: the session is there for SendDevice().
+  bool attaches_devices = false;
   std::uint32_t max_message_bytes = 1u << 20;
+  std::size_t max_queued_frames = 1024;  ///< Messages that wait while the server does not read.
   double backoff_min_s = 0.1;
   double backoff_max_s = 1;
   double refused_wait_s = 5;  ///< Between tries when the server says no, times 0.5 to 1.
@@ -71,6 +74,8 @@ struct ClientHandlers {
   std::function<void(const v1::Notice&)> on_notice = {};
   /// The server said no, before on_state says so.
   std::function<void(const v1::Refused&)> on_refused = {};
+  /// With `attaches_devices`: a message to a device.
+  std::function<void(const v1::DeviceEnvelope&)> on_device = {};
 };
 
 /// Connects, keeps connected (0.1 s to 1 s between tries, with jitter) and resumes by sequence.
@@ -86,10 +91,16 @@ class Client {
 
   void Start();
   void Stop();
+  /// Sends what is queued, then closes with this reason; does not dial again.
+  void Finish(const std::string& reason);
 
   /// Sends a command (its id is filled in) and calls `done` with the answer, or with ok = false
   /// when the link is down or no answer comes within the deadline.
   void Send(v1::Command command, std::function<void(const v1::CommandResult&)> done);
+
+  /// Sends a message of a device. False when it is dropped: the link is down, its queue is full,
+  /// or it is longer than kMaxDeviceBytes.
+  bool SendDevice(const v1::DeviceEnvelope& message);
 
   /// Asks for missing ticks; they arrive in on_tick flagged refilled.
   void Refill(std::uint64_t from_sequence, std::uint64_t to_sequence);

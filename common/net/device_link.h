@@ -12,12 +12,14 @@
 #include "common/stream/hands.h"
 #include "footing/v1/device.pb.h"
 
-/// A client's side of footingd's device socket (docs/protocol.md).
+/// A client's side of footingd's device socket, or, beyond this host, of a session that attaches
+/// devices (docs/protocol.md).
 namespace footing::device_link {
 
 /// Address of footingd, and the calls that a link makes.
 struct Options {
   transport::Address to;
+  std::string client_name = {};          ///< Name of the session, for people.
   std::size_t max_queued_frames = 1024;  ///< Messages that wait while footingd does not read.
   std::function<void()> on_open = {};    ///< After each connection is made.
   std::function<void(const v1::DeviceEnvelope& message)> on_message = {};
@@ -28,7 +30,9 @@ struct Options {
 };
 
 /// One connection to the device socket, dialled again four times a second while there is none; the
-/// log says why, once for each reason. Everything runs on the io_context's one thread.
+/// log says why, once for each reason. Where BySession() holds it is a session with the role
+/// control, by the rules of all clients (transport::Client). Everything runs on the io_context's
+/// one thread.
 class DeviceLink {
  public:
   DeviceLink(boost::asio::io_context& io, Options options);
@@ -47,7 +51,9 @@ class DeviceLink {
   void Stop(const std::string& reason);
 
   bool open() const;
-  bool was_open() const;  ///< Whether footingd has listened there at any time.
+  bool was_open() const;  ///< Whether footingd has let it in at any time.
+  /// The error of a program that has waited for footingd as long as it was to run, in vain.
+  Error NeverOpen() const;
   std::uint64_t sent() const;
   std::uint64_t dropped() const;
 
@@ -56,7 +62,12 @@ class DeviceLink {
   std::shared_ptr<Implementation> implementation_;
 };
 
-/// The error of a program that has waited for footingd at `to` for as long as it was to run.
-Error NoFootingd(const transport::Address& to);
+/// Whether devices go to this address within a session: to tls:, and to tcp: beyond this host.
+bool BySession(const transport::Address& to);
+
+/// Help of the option that names the address.
+inline constexpr char kToHelp[] =
+    "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT; tls:HOST:PORT on another "
+    "host, with its token in the file that FOOTING_TOKEN_FILE names";
 
 }  // namespace footing::device_link

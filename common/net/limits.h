@@ -13,6 +13,9 @@
 
 namespace footing::transport {
 
+/// Longest message of the device socket, and of devices within a session.
+inline constexpr std::uint32_t kMaxDeviceBytes = 2048;
+
 /// How much somebody may do: `per_s` a second on the average, `burst` at once. What is done is
 /// charged afterwards, so that the level may fall below zero; the next one waits that much longer.
 /// A plain value; instants are nanoseconds of any one clock. A rate of 0 never limits.

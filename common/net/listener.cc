@@ -97,8 +97,8 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
   Error NoTls() const {
     return UsageError(
         "will not listen on " + address_.Text() +
-        ": this program has no TLS, which connections beyond this host need; listen on "
-        "unix:PATH, and connect from other machines with ssh -L");
+        ": there is no TLS here, which connections beyond this host need; listen on unix:PATH, and "
+        "connect from other machines with ssh -L");
   }
 
   Result<void> PrepareTls() {

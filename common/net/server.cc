@@ -90,9 +90,15 @@ class Server::Implementation {
   }
 
   void Answer(std::uint64_t number, const v1::CommandResult& result) {
-    for (const auto& session : sessions_.all()) {
-      if (session->info().session == number) return session->Answer(result);
-    }
+    if (const auto session = sessions_.Find(number)) session->Answer(result);
+  }
+
+  void SendDevice(std::uint64_t number, const v1::DeviceEnvelope& message) {
+    if (const auto session = sessions_.Find(number)) session->SendDevice(message);
+  }
+
+  void EndSession(std::uint64_t number, const std::string& reason) {
+    if (const auto session = sessions_.Find(number)) session->End(reason);
   }
 
   void NoteLateTicks(std::uint64_t count) {
@@ -241,6 +247,12 @@ void Server::Relay(const TickNumber& number, const std::vector<ChannelBytes>& ch
 }
 void Server::Answer(std::uint64_t session, const v1::CommandResult& result) {
   implementation_->Answer(session, result);
+}
+void Server::SendDevice(std::uint64_t session, const v1::DeviceEnvelope& message) {
+  implementation_->SendDevice(session, message);
+}
+void Server::EndSession(std::uint64_t session, const std::string& reason) {
+  implementation_->EndSession(session, reason);
 }
 void Server::NoteLateTicks(std::uint64_t count) { implementation_->NoteLateTicks(count); }
 std::string Server::fingerprint() const { return implementation_->fingerprint(); }

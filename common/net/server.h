@@ -105,6 +105,10 @@ struct ServerHandlers {
   /// At most one line in 10 s of each kind: a session is slowed or ended, ticks are late, a channel
   /// is too long for a tick, or a client is refused, for each reason.
   std::function<void(const OverloadLine&)> on_overload = {};
+  /// A message of the device socket, from a session with role control or admin, and when it came.
+  /// Empty: the server takes no devices, and a session that sends one is ended.
+  std::function<void(const SessionInfo&, std::int64_t received_ns, const v1::DeviceEnvelope&)>
+      on_device = {};
 };
 
 /// Counts of a server since its start, and its present sessions.
@@ -152,6 +156,11 @@ class Server {
 
   /// Answers a command that on_command left open; `result` has its id. The session may be gone.
   void Answer(std::uint64_t session, const v1::CommandResult& result);
+
+  /// A message to the devices of a session; dropped if the session does not read, or is gone.
+  void SendDevice(std::uint64_t session, const v1::DeviceEnvelope& message);
+  /// Says goodbye to one session, with the reason.
+  void EndSession(std::uint64_t session, const std::string& reason);
 
   /// The owner could not publish `count` ticks in time. The next tick's sequence leaves them out,
   /// and a Gap in front of it says so; they are counted, logged and said to every session, the last

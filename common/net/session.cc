@@ -97,6 +97,8 @@ namespace {
 constexpr std::size_t kMaxQueuedAnswers = 64;
 constexpr std::size_t kRememberedAnswers = 256;
 constexpr double kCommandCost = 2;  // In messages.
+/// In messages: a device sends hundreds a second. An attachment costs as much as a command.
+constexpr double kDeviceCost = 0.02;
 
 FramedLimits LimitsOf(const ServerOptions& options) {
   FramedLimits limits;
@@ -221,6 +223,8 @@ void Session::Dispatch(const v1::Envelope& message, std::int64_t arrived_ns) {
       return record_.TakePong(message.pong(), arrived_ns);
     case v1::Envelope::kCommand:
       return OnCommand(message.command(), arrived_ns);
+    case v1::Envelope::kDevice:
+      return OnDevice(message.device(), arrived_ns);
     case v1::Envelope::BODY_NOT_SET:
       return;  // Message of a later minor version.
     case v1::Envelope::kHello:
@@ -297,6 +301,30 @@ std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
     return shared_.handlers.on_command(info_, command);
   }
   return failed;
+}
+
+void Session::OnDevice(const v1::DeviceEnvelope& message, std::int64_t arrived_ns) {
+  connection_.Charge((message.has_attach() ? kCommandCost : kDeviceCost) - 1);
+  if (!shared_.handlers.on_device) {
+    return BadMessage(shared_.options.server_id +
+                      " takes no devices here; start footingd with --source stream:tls:HOST:PORT");
+  }
+  if (info_.role < v1::ROLE_CONTROL) {
+    return BadMessage(
+        "to attach devices a session needs the role control, and this one has a lower one: request "
+        "control in Hello, with the server's token or a certificate for this role");
+  }
+  if (message.ByteSizeLong() > kMaxDeviceBytes) {
+    return BadMessage("a message of a device has at most " + std::to_string(kMaxDeviceBytes) +
+                      " bytes");
+  }
+  shared_.handlers.on_device(info_, arrived_ns, message);
+}
+
+void Session::SendDevice(const v1::DeviceEnvelope& message) {
+  v1::Envelope envelope;
+  *envelope.mutable_device() = message;
+  connection_.Send(envelope.SerializeAsString());
 }
 
 void Session::SendPayload(std::string_view payload) {
@@ -717,6 +745,12 @@ std::shared_ptr<Session> SessionTable::Remove(const Session& session) {
   std::shared_ptr<Session> removed = *found;
   sessions_.erase(found);
   return removed;
+}
+
+std::shared_ptr<Session> SessionTable::Find(std::uint64_t number) const {
+  const auto found = std::find_if(sessions_.begin(), sessions_.end(),
+                                  [&](const auto& one) { return one->info().session == number; });
+  return found == sessions_.end() ? nullptr : *found;
 }
 
 std::size_t SessionTable::SetKeys(const AccessKeys& keys) {

@@ -184,6 +184,10 @@ class Session : public std::enable_shared_from_this<Session> {
   /// does no harm when it is asked for again.
   void Answer(const v1::CommandResult& result, bool remember = true);
 
+  /// A message to the devices of this session; dropped if it does not read, as a device out of
+  /// range loses its outputs.
+  void SendDevice(const v1::DeviceEnvelope& message);
+
   /// Something slows this session, or all of them.
   void Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count);
 
@@ -230,6 +234,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void SayNothingToRefill(const v1::Refill& wish);
   void OnPing(const v1::Ping& ping, std::int64_t arrived_ns);
   void OnCommand(const v1::Command& command, std::int64_t arrived_ns);
+  void OnDevice(const v1::DeviceEnvelope& message, std::int64_t arrived_ns);
   std::optional<v1::CommandResult> Carry(const v1::Command& command, std::int64_t arrived_ns);
 
   void SendSnapshot(std::uint64_t sequence);
@@ -287,6 +292,8 @@ class SessionTable {
   std::string WhyFull(const Session& session);
   void Add(const std::shared_ptr<Session>& session) { sessions_.push_back(session); }
   std::shared_ptr<Session> Remove(const Session& session);
+  /// The one with that number; null: there is none.
+  std::shared_ptr<Session> Find(std::uint64_t number) const;
 
   /// Other keys: ends the sessions that came in by what is gone, and returns how many.
   std::size_t SetKeys(const AccessKeys& keys);

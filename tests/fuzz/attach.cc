@@ -115,7 +115,7 @@ class Socket {
       return std::string();
     };
     handlers.on_report = [this](DeviceHandle device, const devices::IncomingReport& report) {
-      Expect(attached_.contains(device) && report.bytes.size() <= devices::kMaxEnvelopeBytes);
+      Expect(attached_.contains(device) && report.bytes.size() <= transport::kMaxDeviceBytes);
     };
     handlers.on_detach = [this](DeviceHandle device, const std::string&) {
       Expect(attached_.erase(device) == 1);

@@ -132,6 +132,11 @@ class Served {
  private:
   transport::ServerHandlers Handlers() {
     transport::ServerHandlers handlers;
+    handlers.on_device = [](const transport::SessionInfo& info, std::int64_t,
+                            const v1::DeviceEnvelope& message) {
+      Expect(info.role >= v1::ROLE_CONTROL);
+      Expect(message.ByteSizeLong() <= transport::kMaxDeviceBytes);
+    };
     handlers.on_command = [this](const transport::SessionInfo& info,
                                  const v1::Command& command) -> std::optional<v1::CommandResult> {
       Expect(info.role >= v1::ROLE_CONTROL);

@@ -2,7 +2,8 @@
 
 250 sessions with one certificate come again and again, yet control and other viewers get in; an administrator lists
 and ends sessions; removing the certificate ends the rest. A host that guesses tokens has slow answers, and its right
-token comes in at any time. The view token lets look only.
+token comes in at any time. The view token lets look only. footing-stream attaches devices with the token, and with
+nothing else; they deliver while others guess, and go when the token is replaced.
 
 Usage: access.py BINARY_FOLDER
 """
@@ -98,7 +99,7 @@ class Lab:
         self.write("clients", f"{self.clients_without_flood}{self.flood_line}\n")
         self.fingerprint = self.flood_line.split()[0]
         self.daemon = stage.start(
-            "footingd", "--listen", stage.sensor, "--listen", "tls:127.0.0.1:0", "--source", f"stream:{stage.devices}",
+            "footingd", "--listen", stage.sensor, "--listen", "tls:127.0.0.1:0", "--source", "stream:tls:127.0.0.1:0",
             *(word for key in ("token", "view_token") for word in ("--set", f"{key}_file={stage.folder}/{key}")),
             "--set", f"clients_file={stage.folder}/clients")
         self.port = int(stage.wait_for(lambda: re.search(r"listening on tls:127\.0\.0\.1:(\d+)", self.log()), "TLS")[1])
@@ -111,13 +112,21 @@ class Lab:
     def log(self):
         return (self.stage.folder / "footingd.log").read_text()
 
-    def run(self, who, *words, token=""):
+    def environment(self, who, token):
         folder = self.stage.folder / who
         folder.mkdir(exist_ok=True)
-        environment = dict(os.environ, FOOTING_KNOWN_SERVERS=f"{folder}/known_servers",
-                           FOOTING_TOKEN_FILE=f"{self.stage.folder}/{token}" if token else "")
+        return dict(os.environ, FOOTING_KNOWN_SERVERS=f"{folder}/known_servers",
+                    FOOTING_TOKEN_FILE=f"{self.stage.folder}/{token}" if token else "")
+
+    def run(self, who, *words, token=""):
         return subprocess.run([self.stage.binaries / "footing-ctl", "--json", *map(str, words)], capture_output=True, text=True,
-                              timeout=60, stdin=subprocess.DEVNULL, check=False, env=environment)
+                              timeout=60, stdin=subprocess.DEVNULL, check=False, env=self.environment(who, token))
+
+    def stream(self, who, *words, token="", by="tls"):
+        """Starts footing-stream with two Wiimotes, on another host as far as footingd can see."""
+        return subprocess.Popen(
+            [self.stage.binaries / "footing-stream", "user", "--to", f"{by}:127.0.0.1:{self.port}", *words], text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, env=self.environment(who, token))
 
     def console(self, who, *words, token=""):
         done = self.run(who, *words, token=token)
@@ -136,6 +145,9 @@ class Lab:
 
     def sessions(self):
         return self.console("admin", "--connect", self.stage.sensor, "sessions")["sessions"]
+
+    def devices(self):
+        return json.loads(self.run("admin", "--connect", self.stage.sensor, "devices").stdout)["devices"]
 
 
 def check_flood(stage, lab):
@@ -190,6 +202,31 @@ def check_guesses(stage, lab):
     assert TOKEN not in lab.log() and VIEW_TOKEN not in lab.log()
 
 
+@contextlib.contextmanager
+def devices_over_tls(stage, lab):
+    """Those of footing-stream, while it runs; without the right token it ends with the reason."""
+    lab.write("wrong_token", "0123456789abcdef")
+    refused = {"the token is wrong": lab.stream("wrong", "--seconds", "3", token="wrong_token"),
+               "the role control is not given": lab.stream("looks", "--seconds", "3", token="view_token"),
+               "this server wants its token": lab.stream("nobody", "--seconds", "3"),
+               "connect with tls:HOST:PORT": lab.stream("clear", "--seconds", "3", token="token", by="tcp")}
+    for why, process in refused.items():
+        text, _ = process.communicate(timeout=PATIENCE_S)
+        assert process.returncode == 1 and why in text.splitlines()[-1], (why, process.returncode, text)
+    assert not lab.devices()
+    with lab.stream("far", token="token") as far:
+        try:
+            assert all(one["simulated"] for one in stage.wait_for_devices())
+            of_devices = [one for one in lab.sessions() if one["client"] == "footing-stream"]
+            assert [(one["role"], one["granted_by"]) for one in of_devices] == [("control", "token")], of_devices
+            yield
+            stage.wait_for_devices()
+            check_replaced_token(stage, lab)
+            stage.wait_for(lambda: not any(one["state"] == "live" for one in lab.devices()), "the devices to go")
+        finally:
+            far.kill()
+
+
 def check_replaced_token(stage, lab):
     watch = subprocess.Popen(
         [stage.binaries / "footing-ctl", "--connect", f"tls:127.0.0.1:{lab.port}", "watch"], stdout=subprocess.PIPE,
@@ -197,11 +234,12 @@ def check_replaced_token(stage, lab):
         env=dict(os.environ, FOOTING_KNOWN_SERVERS=f"{stage.folder}/by_token/known_servers",
                  FOOTING_TOKEN_FILE=f"{stage.folder}/token"))
     try:
-        stage.wait_for(lambda: [one for one in lab.sessions() if one["granted_by"] == "token"], "its session")
+        stage.wait_for(lambda: [one for one in lab.sessions() if one["client"] == "footing-ctl" and one["granted_by"] == "token"],
+                       "its session")
         lab.write("token", "another-token-0123456789")
         lab.daemon.send_signal(signal.SIGHUP)
         stage.wait_for(lambda: "contents of token_file" in lab.log(), "the reload")
-        stage.wait_for(lambda: "certificate was replaced or removed: 1" in lab.log(), "its end")
+        stage.wait_for(lambda: "certificate was replaced or removed: 2" in lab.log(), "its end, and the devices'")
     finally:
         watch.kill()
         watch.communicate(timeout=PATIENCE_S)
@@ -211,8 +249,8 @@ def main():
     with Stage(sys.argv[1]) as stage:
         lab = Lab(stage)
         check_flood(stage, lab)
-        check_guesses(stage, lab)
-        check_replaced_token(stage, lab)
+        with devices_over_tls(stage, lab):
+            check_guesses(stage, lab)
 
 
 if __name__ == "__main__":

@@ -3,9 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
-#include <set>
 #include <string>
 
 #include <sys/types.h>
@@ -18,8 +16,6 @@
 #include "daemon/sensor/reports/output_report.h"
 
 namespace footing::devices {
-
-inline constexpr std::uint32_t kMaxEnvelopeBytes = 2048;
 
 /// Limits of one connection: of its messages, and of those that wait for it.
 transport::FramedLimits LimitsOfOne();
@@ -71,28 +67,32 @@ class SocketSource : public DeviceSource {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Messages of footingd on the device socket: serialised DeviceEnvelopes.
-std::string OutputMessage(std::uint32_t slot, const reports::OutputReport& report);
-/// Asks for a feature report of `size` bytes, id included.
-std::string FeatureRequestMessage(std::uint32_t slot, std::uint8_t id, std::size_t size);
-/// Reports to the sender that its device is refused, and why.
-std::string RefusedMessage(std::uint32_t slot, const std::string& why);
-
-/// A connection to the device socket, and what it has attached.
-struct Connection {
-  std::unique_ptr<transport::FramedConnection> link;
-  transport::Peer peer;
-  std::map<std::uint32_t, DeviceHandle> slots;
-  std::set<std::uint32_t> refused_slots;
-  std::int64_t heard_ns = 0;
-  bool closing = false;
-  bool is_newer = false;  ///< It has sent what this version does not know.
+/// How a SessionSource reaches its sessions: transport::Server.
+struct SessionLink {
+  std::function<void(std::uint64_t session, const v1::DeviceEnvelope&)> send;
+  std::function<void(std::uint64_t session, const std::string& why)> end;
 };
 
-/// Where a device is attached.
-struct Place {
-  std::uint64_t connection;
-  std::uint32_t slot;
+/// Devices of other hosts: the messages of the device socket, within sessions that the server has
+/// let in with the role control. Stamps by the sender's clock are ignored, which is not footingd's.
+class SessionSource : public DeviceSource {
+ public:
+  SessionSource(std::function<DeviceHandle()> new_handle, SourceHandlers handlers,
+                const SessionLink& link);
+  ~SessionSource() override;
+
+  Result<void> Start() override { return {}; }
+  void Take(std::uint64_t session, std::int64_t received_ns, const v1::DeviceEnvelope& message);
+  /// Detaches the devices of a session that has ended, if it had any.
+  void EndSession(std::uint64_t session);
+  void Send(DeviceHandle device, const reports::OutputReport& report) override;
+  void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) override;
+  void Refuse(DeviceHandle device, const std::string& why) override;
+  void Stop() override;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace footing::devices

@@ -1,10 +1,14 @@
 #include "daemon/sensor/service/config.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <sys/socket.h>
+
 #include "common/net/address.h"
+#include "common/net/device_link.h"
 #include "common/net/metrics_endpoint.h"
 #include "common/net/monitoring.h"
 #include "common/runtime/config.h"
@@ -20,7 +24,9 @@ void Config::Bind(config::Binder& binder) {
   binder.TextList("listen", listen,
                   "Addresses for clients, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   binder.TextList("sources", sources,
-                  "Sources of devices: hid, or stream:ADDRESS for simulated devices");
+                  "Sources of devices: hid, or stream:ADDRESS for simulated devices and trackers; "
+                  "stream:tls:HOST:PORT takes those of other hosts, from clients with the role "
+                  "control");
   binder.Flag("tcp_devices", tcp_devices,
               "Allow stream:tcp:HOST:PORT as a source: then every user of this host may attach "
               "simulated devices");
@@ -78,6 +84,35 @@ Result<std::optional<transport::Address>> ParseSource(const std::string& text) {
   return std::optional(*address);
 }
 
+bool ComesBySession(const transport::Address& source) {
+  if (source.kind == transport::Address::Kind::kPassed) {
+    sockaddr_storage name{};
+    socklen_t size = sizeof(name);
+    const int passed = service_manager::PassedSocket(source.path);
+    return passed >= 0 && getsockname(passed, reinterpret_cast<sockaddr*>(&name), &size) == 0 &&
+           name.ss_family != AF_UNIX;
+  }
+  return device_link::BySession(source);
+}
+
+std::vector<std::string> SessionSources(const Config& config) {
+  std::vector<std::string> addresses;
+  for (const std::string& text : config.sources) {
+    const auto source = ParseSource(text);
+    if (source && *source && ComesBySession(**source)) addresses.push_back((*source)->Text());
+  }
+  return addresses;
+}
+
+std::vector<std::string> SessionAddresses(const Config& config) {
+  std::vector<std::string> addresses = config.listen;
+  for (const std::string& address : SessionSources(config)) {
+    const bool there = std::find(addresses.begin(), addresses.end(), address) != addresses.end();
+    if (!there) addresses.push_back(address);
+  }
+  return addresses;
+}
+
 Result<void> Check(const Config& config) {
   for (const std::string& text : config.listen) {
     if (const auto address = transport::ParseAddress(text); !address) return address.error();
@@ -85,7 +120,8 @@ Result<void> Check(const Config& config) {
   for (const std::string& text : config.sources) {
     const auto source = ParseSource(text);
     if (!source) return source.error();
-    if (*source && (*source)->kind == transport::Address::Kind::kTcp && !config.tcp_devices) {
+    const bool in_clear = *source && (*source)->kind == transport::Address::Kind::kTcp;
+    if (in_clear && !ComesBySession(**source) && !config.tcp_devices) {
       return UsageError("source " + text +
                         ": over TCP every user of this host may attach devices; use "
                         "stream:unix:PATH, or allow it with --set tcp_devices=true");
@@ -135,7 +171,9 @@ transport::AccessSettings AccessOf(const Config& config) {
   return access;
 }
 
-Result<void> CheckStart(const Config& config) { return AccessOf(config).CheckStart(config.listen); }
+Result<void> CheckStart(const Config& config) {
+  return AccessOf(config).CheckStart(SessionAddresses(config));
+}
 
 transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
                                            const transport::ServerOptions& with_access) {
@@ -149,6 +187,7 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.capabilities = {"features", "boards", "raw",      "rumble", "leds", "assign",
                           "nunchuk",  "camera", "sphere",   "setup",  "tare", "mounting",
                           "layout",   "hands",  "contacts", "lease"};
+  if (!SessionSources(config).empty()) options.capabilities.push_back("devices");
   return options;
 }
 
@@ -223,9 +262,11 @@ cli::ServerProgram Program() {
           "Sensor daemon: reads devices, publishes samples, features and forces.",
           "  footingd\n"
           "  footingd --source stream:unix:/tmp/devices.sock\n"
+          "  footingd --source hid --source stream:tls:192.168.1.5:7432 --set token_file=token\n"
           "  footingd --set 'roles={\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}'\n",
           {{"--source", "sources",
-            "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated",
+            "Source of devices: hid, or stream:ADDRESS for simulated devices (of other hosts: "
+            "stream:tls:HOST:PORT); may be repeated",
             Kind::kList},
            {"--metrics", "metrics",
             "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH"},

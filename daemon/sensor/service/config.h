@@ -53,6 +53,16 @@ Result<void> Check(const Config& config);
 /// The address of a source "stream:ADDRESS"; none for "hid".
 Result<std::optional<transport::Address>> ParseSource(const std::string& text);
 
+/// Whether the devices of this source come within sessions, by the rules of all clients: those over
+/// TLS, over TCP beyond this host, and over a passed socket of TCP.
+bool ComesBySession(const transport::Address& source);
+
+/// The addresses of those sources; empty: no session may attach devices.
+std::vector<std::string> SessionSources(const Config& config);
+
+/// Where it listens for sessions: `listen`, and the sources whose devices come within one.
+std::vector<std::string> SessionAddresses(const Config& config);
+
 /// `before` with those settings of `wanted` that footingd takes while it runs. `say` gets a line
 /// with what changed, and one with what needs a restart.
 ///

@@ -76,13 +76,14 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
                  [this](const transport::SessionInfo& session) {
                    hub_.EndSession(session.session);
                    lease_.EndSession(session.session);
+                   if (session_devices_ != nullptr) session_devices_->EndSession(session.session);
                  },
-                 LogOverload}),
+                 LogOverload, DeviceHandler(config)}),
         monitor_(server_, config.tick_rate_hz, {"footingd", version}) {}
 
   Result<void> Open() {
-    auto listen = config_.listen;
-    if (listen.empty()) listen = {OwnAddress("sensor")};
+    auto listen = SessionAddresses(config_);
+    if (config_.listen.empty()) listen.insert(listen.begin(), OwnAddress("sensor"));
     for (const std::string& text : listen) {
       const auto address = transport::ParseAddress(text);
       if (!address) return address.error();
@@ -137,10 +138,17 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   const std::vector<std::string>& listening_on() const { return listening_on_; }
 
  private:
-  Result<void> OpenSource(const std::string& text) {
-    const auto address = ParseSource(text);
-    if (!address) return address.error();
-    const std::size_t index = sources_.size();
+  using OnDevice = decltype(transport::ServerHandlers::on_device);
+
+  OnDevice DeviceHandler(const Config& config) {
+    if (SessionSources(config).empty()) return nullptr;
+    return [this](const transport::SessionInfo& session, std::int64_t received_ns,
+                  const v1::DeviceEnvelope& message) {
+      session_devices_->Take(session.session, received_ns, message);
+    };
+  }
+
+  devices::SourceHandlers HandlersOf(std::size_t index) {
     devices::SourceHandlers handlers;
     handlers.on_attach = [this, index](DeviceHandle device, const devices::DeviceIdentity& who) {
       source_of_[device] = index;
@@ -167,12 +175,35 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     handlers.on_trouble = [this](const std::string& line) {
       troubles_.Say({line, "", true}, clock::MonotonicNs());
     };
+    return handlers;
+  }
+
+  Result<void> OpenSource(const std::string& text) {
+    const auto address = ParseSource(text);
+    if (!address) return address.error();
+    const bool by_session = *address && ComesBySession(**address);
+    if (by_session && session_devices_ != nullptr) return {};  // One for all sessions.
+    const auto handlers = HandlersOf(sources_.size());
     const auto new_handle = [this] { return ++last_handle_; };
     if (!*address) {
       sources_.push_back(std::make_unique<devices::HidSource>(io_, new_handle, handlers));
       // Without rights to any device simulated ones still work.
       if (const auto started = sources_.back()->Start(); !started)
         log::Warning(started.error().message);
+      return {};
+    }
+    if (by_session) {
+      auto source = std::make_unique<devices::SessionSource>(
+          new_handle, handlers,
+          devices::SessionLink{[this](std::uint64_t session, const v1::DeviceEnvelope& message) {
+                                 server_.SendDevice(session, message);
+                               },
+                               [this](std::uint64_t session, const std::string& why) {
+                                 server_.EndSession(session, why);
+                               }});
+      session_devices_ = source.get();
+      sources_.push_back(std::move(source));
+      log::Info("simulated devices of clients with the role control");
       return {};
     }
     sources_.push_back(std::make_unique<devices::SocketSource>(io_, **address, new_handle, handlers,
@@ -247,6 +278,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   std::shared_ptr<timer::Timer> lan_warning_;  ///< With insecure_lan.
   timer::TimePoint next_tick_;
   std::vector<std::unique_ptr<devices::DeviceSource>> sources_;
+  devices::SessionSource* session_devices_ = nullptr;  ///< One of them; null: none.
   std::map<DeviceHandle, std::size_t> source_of_;
   DeviceHandle last_handle_ = 0;
   LimitedLog changes_{Log};

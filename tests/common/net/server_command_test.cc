@@ -64,6 +64,42 @@ TEST_F(ServerCommandTest, ControlAndAdminAreCarriedOutViewAndLogAreNot) {
   EXPECT_EQ(commands_.size(), 2u);
 }
 
+TEST_F(ServerCommandTest, DevicesNeedTheRoleControlAServerThatTakesThemAndShortMessages) {
+  takes_devices_ = true;
+  StartServer();
+  const auto why_ended = [&](v1::Role role, std::size_t listener, std::size_t bytes) {
+    const auto client = WithRole(role, listener);
+    v1::Envelope message;
+    message.mutable_device()->mutable_input_report()->set_report(std::string(bytes, 'r'));
+    client->Send(message);
+    EXPECT_TRUE(WaitFor(*client, v1::Envelope::kGoodbye));
+    return client->Find(v1::Envelope::kGoodbye)->goodbye().reason();
+  };
+  EXPECT_NE(why_ended(v1::ROLE_LOG, 1, 10).find("needs the role control"), std::string::npos);
+  EXPECT_NE(why_ended(v1::ROLE_CONTROL, 0, 2048).find("at most 2048 bytes"), std::string::npos);
+  EXPECT_TRUE(devices_.empty());
+  takes_devices_ = false;
+  StartServer();
+  EXPECT_NE(why_ended(v1::ROLE_CONTROL, 0, 10).find("takes no devices here"), std::string::npos);
+}
+
+TEST_F(ServerCommandTest, DevicesMaySendFiftyTimesAsManyMessages) {
+  takes_devices_ = true;
+  StartServer();
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  v1::Envelope message;
+  message.mutable_device()->mutable_input_report()->set_report("r");
+  const auto send = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) client->Send(message);
+  };
+  send(1000);  // 20 messages of the 100 of a second.
+  ASSERT_TRUE(RunUntil([&] { return devices_.size() == 1000; }));
+  EXPECT_EQ(server_->statistics().slowed, 0u);
+  message.mutable_device()->mutable_attach()->set_slot(1);  // 2 messages each.
+  send(100);
+  EXPECT_TRUE(RunUntil([&] { return server_->statistics().slowed > 0; }));
+}
+
 TEST_F(ServerCommandTest, SessionsAreListedWithWhereTheyComeFrom) {
   StartServer();
   const auto control = WithRole(v1::ROLE_CONTROL);

@@ -92,6 +92,13 @@ class ServerFixture : public IoFixture {
     };
     handlers.on_session_end = [this](const SessionInfo& info) { ended_.push_back(info); };
     handlers.on_overload = [this](const OverloadLine& line) { overloads_.push_back(line.text); };
+    if (takes_devices_) {
+      options.capabilities.push_back("devices");
+      handlers.on_device = [this](const SessionInfo& info, std::int64_t,
+                                  const v1::DeviceEnvelope& message) {
+        devices_.emplace_back(info, message);
+      };
+    }
     server_ = std::make_unique<Server>(io_, options, handlers);
     ASSERT_TRUE(server_->Listen(UnixAddress()).ok());
     ASSERT_TRUE(server_->Listen(TcpAddress()).ok());
@@ -164,6 +171,8 @@ class ServerFixture : public IoFixture {
   bool answer_later_ = false;
   std::vector<SessionInfo> ended_;
   std::vector<std::string> overloads_;
+  bool takes_devices_ = false;
+  std::vector<std::pair<SessionInfo, v1::DeviceEnvelope>> devices_;
 };
 
 }  // namespace footing::transport

@@ -48,6 +48,76 @@ TEST_F(SocketSourceTest, ADeviceThatGivesWayIsToldWhyAndTheOthersGoOn) {
   EXPECT_FALSE(peer->closed);
 }
 
+class SessionSourceTest : public SocketSourceTest {
+ protected:
+  /// An attachment of a Wiimote.
+  static v1::DeviceEnvelope Attaching(std::uint32_t slot, const std::string& serial) {
+    v1::DeviceEnvelope envelope;
+    v1::DeviceAttach& attach = *envelope.mutable_attach();
+    attach.set_slot(slot);
+    attach.set_vendor(0x057e);
+    attach.set_product(0x0306);
+    attach.set_name("Nintendo RVL-CNT-01");
+    attach.set_serial(serial);
+    return envelope;
+  }
+  static v1::DeviceEnvelope Reporting(std::uint32_t slot) {
+    v1::DeviceEnvelope envelope;
+    envelope.mutable_input_report()->set_slot(slot);
+    envelope.mutable_input_report()->set_report("x");
+    return envelope;
+  }
+
+  std::vector<std::pair<std::uint64_t, v1::DeviceEnvelope>> sent_;
+  std::vector<std::pair<std::uint64_t, std::string>> ended_;
+  SessionSource sessions_{
+      [this] { return ++last_handle_; }, Handlers(),
+      SessionLink{[this](std::uint64_t session, const v1::DeviceEnvelope& message) {
+                    sent_.emplace_back(session, message);
+                  },
+                  [this](std::uint64_t session, const std::string& why) {
+                    ended_.emplace_back(session, why);
+                  }}};
+};
+
+TEST_F(SessionSourceTest, EachSessionHasSlotsOfItsOwnAndItsEndDetachesThem) {
+  sessions_.Take(7, 1, Attaching(0, "a"));
+  sessions_.Take(8, 1, Attaching(0, "b"));
+  sessions_.Take(8, 1, Attaching(1, "taken"));
+  sessions_.Take(7, 2, Reporting(0));
+  sessions_.Take(8, 2, Reporting(0));
+  EXPECT_THAT(reported_, ElementsAre(1, 2));
+  ASSERT_EQ(sent_.size(), 1u) << "the refusal";
+  EXPECT_EQ(sent_[0].first, 8u);
+  EXPECT_EQ(sent_[0].second.refused().slot(), 1u);
+  sessions_.Send(2, {0x15, 0x00});
+  EXPECT_EQ(sent_.back().first, 8u);
+  EXPECT_EQ(sent_.back().second.output().report(), std::string("\x15\x00", 2));
+  sessions_.EndSession(7);
+  sessions_.EndSession(9);  // It had none.
+  EXPECT_THAT(detached_, ElementsAre(1));
+  sessions_.Take(8, 3, Reporting(5));
+  EXPECT_THAT(detached_, ElementsAre(1, 2)) << "it does not keep to the protocol";
+  ASSERT_EQ(ended_.size(), 1u);
+  EXPECT_EQ(ended_[0].first, 8u);
+  EXPECT_EQ(ended_[0].second, "a report of a slot with no device");
+  EXPECT_EQ(sent_.back().second.refused().reason(), "a report of a slot with no device");
+  EXPECT_THAT(trouble_, ElementsAre(HasSubstr("devices of session 8")));
+  sessions_.Stop();
+  sessions_.Take(9, 4, Attaching(0, "c"));
+  EXPECT_EQ(attached_.size(), 3u) << "nothing comes in while the sessions are drained";
+}
+
+TEST_F(SessionSourceTest, StampsOfAnotherHostsClockAreIgnored) {
+  v1::DeviceEnvelope hands;
+  hands.mutable_hand_frame()->set_age_ns(20);
+  hands.mutable_hand_frame()->set_sent_ns(1);
+  sessions_.Take(7, 5, hands);
+  ASSERT_EQ(hands_.size(), 1u);
+  EXPECT_EQ(hands_[0].age_ns, 20);
+  EXPECT_EQ(hands_[0].sent_ns, 0);
+}
+
 TEST(ConnectionLimits, OneUserCannotTakeEveryPlaceAndAdministratorsHaveTheirOwn) {
   const ConnectionLimits limits = {64, 16};
   constexpr uid_t kOwn = 500;

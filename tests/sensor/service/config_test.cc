@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "common/cli/cli.h"
 #include "common/cli/server.h"
@@ -56,6 +57,42 @@ TEST(CommandLine, CheckConfigReadsTheFilesAndEndsAsTheStartWould) {
   const Parsed metrics = Parse({"--check-config", "--metrics", "tcp:0.0.0.0:9100"});
   EXPECT_EQ(metrics.exit_code, 2);
   EXPECT_THAT(metrics.errors, HasSubstr("they stay on this host"));
+}
+
+TEST(CommandLine, DevicesOfOtherHostsComeByTheRulesOfClients) {
+  const test::TemporaryFolder folder;
+  const std::string token = folder.Path("token");
+  std::ofstream(token) << "0123456789abcdef";
+  ASSERT_EQ(chmod(token.c_str(), 0600), 0);
+  const auto check = [](std::vector<std::string> words) {
+    words.insert(words.begin(), "--check-config");
+    return Parse(std::move(words));
+  };
+  const std::string tls = "stream:tls:0.0.0.0:7432", tcp = "stream:tcp:192.168.1.5:7432";
+  const Parsed keyless = check({"--source", tls});
+  EXPECT_EQ(keyless.exit_code, 2);
+  EXPECT_THAT(keyless.errors, HasSubstr("will not listen on tls:0.0.0.0:7432: anyone who"));
+  EXPECT_EQ(check({"--source", tls, "--set", "token_file=" + token}).exit_code, 0);
+  EXPECT_THAT(check({"--source", tcp, "--set", "token_file=" + token}).errors,
+              HasSubstr("must be encrypted; use tls:HOST:PORT"));
+  EXPECT_EQ(check({"--source", tcp, "--insecure-lan", "--set", "token_file=" + token}).exit_code,
+            0);
+  EXPECT_THAT(check({"--source", "stream:tcp:127.0.0.1:7432"}).errors,
+              HasSubstr("every user of this host may attach devices"));
+}
+
+TEST(Config, AddressOfASourceByTlsIsOneOfThoseOfClientsOnce) {
+  Config config;
+  config.listen = {"unix:/tmp/a", "tls:127.0.0.1:1"};
+  config.sources = {"hid", "stream:unix:/tmp/b", "stream:tls:127.0.0.1:1", "stream:tls:[::1]:2"};
+  EXPECT_THAT(SessionAddresses(config),
+              testing::ElementsAre("unix:/tmp/a", "tls:127.0.0.1:1", "tls:[::1]:2"));
+  const auto capabilities = MakeServerOptions(config, "1", {}).capabilities;
+  EXPECT_THAT(capabilities, testing::Contains("devices"));
+  config.sources = {"hid", "stream:unix:/tmp/b"};
+  EXPECT_EQ(SessionAddresses(config), config.listen);
+  EXPECT_THAT(MakeServerOptions(config, "1", {}).capabilities,
+              testing::Not(testing::Contains("devices")));
 }
 
 TEST(CommandLine, OriginNeedsPrintConfig) {
