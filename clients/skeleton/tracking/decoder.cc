@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "common/base/text.h"
@@ -18,8 +19,8 @@ constexpr double kLatestMs = 4'102'444'800e3;  // 2100-01-01.
 bool IsKnown(std::string_view address) {
   for (const std::string_view begin :
        {"/new_user", "/new_skel", "/lost_user", "/exit_user", "/re-enter_user", "/new_hand",
-        "/lost_hand", "/calib_start", "/calib_fail", "/user/", "/orient", "/hit", "/osceleton2/",
-        "/VMC/"}) {
+        "/lost_hand", "/begin_session", "/begin_frame", "/state", "/center", "/calib_start",
+        "/calib_fail", "/user/", "/orient", "/hit", "/osceleton2/", "/VMC/"}) {
     if (address.starts_with(begin)) return true;
   }
   return false;
@@ -28,6 +29,53 @@ bool IsKnown(std::string_view address) {
 std::optional<std::int64_t> FromMs(double time_ms) {
   if (!(time_ms > 0 && time_ms <= kLatestMs)) return std::nullopt;  // 0: no time is given.
   return static_cast<std::int64_t>(std::llround(time_ms * 1e6));
+}
+
+/// A message below /bodies/: whose, and which joint or hand.
+struct BodyAddress {
+  std::int32_t user = 0;
+  std::string_view kind;  ///< "joints" or "hands".
+  std::string_view name;
+};
+
+/// Kinect v2's numbers of persons have 64 bits; the lower 31 are enough.
+std::optional<BodyAddress> ParseBody(std::string_view address) {
+  constexpr std::string_view kBegin = "/bodies/";
+  if (!address.starts_with(kBegin)) return std::nullopt;
+  std::uint64_t user = 0;
+  const char* const end = address.data() + address.size();
+  const auto parsed = std::from_chars(address.data() + kBegin.size(), end, user);
+  if (parsed.ec != std::errc() || parsed.ptr == end || *parsed.ptr != '/') return std::nullopt;
+  const std::string_view rest(parsed.ptr + 1, static_cast<std::size_t>(end - parsed.ptr - 1));
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  return BodyAddress{static_cast<std::int32_t>(user & 0x7fffffff), rest.substr(0, slash),
+                     rest.substr(slash + 1)};
+}
+
+/// Names of the Azure Kinect's joints, by their numbers (k4abt_joint_id_t of its documentation).
+constexpr std::string_view kAzureJoints[] = {
+    "pelvis",        "spine_navel",    "spine_chest",    "neck",        "clavicle_left",
+    "shoulder_left", "elbow_left",     "wrist_left",     "hand_left",   "handtip_left",
+    "thumb_left",    "clavicle_right", "shoulder_right", "elbow_right", "wrist_right",
+    "hand_right",    "handtip_right",  "thumb_right",    "hip_left",    "knee_left",
+    "ankle_left",    "foot_left",      "hip_right",      "knee_right",  "ankle_right",
+    "foot_right",    "head",           "nose",           "eye_left",    "ear_left",
+    "eye_right",     "ear_right"};
+
+/// A name as kAzureJoints has it, of a number; none of anything else.
+std::optional<std::string_view> AzureJoint(std::string_view number) {
+  std::size_t index = 0;
+  const char* const end = number.data() + number.size();
+  const auto parsed = std::from_chars(number.data(), end, index);
+  if (parsed.ec != std::errc() || parsed.ptr != end || index >= std::size(kAzureJoints))
+    return std::nullopt;
+  return kAzureJoints[index];
+}
+
+/// Confidences of Kinect v2's states, as OSCeleton-KinectSDK2 has them.
+double KinectV2Confidence(std::string_view state) {
+  return state == "Tracked" ? 1 : state == "Inferred" ? 0.5 : 0.1;
 }
 
 Eigen::Vector3d Three(std::span<const osc::Argument> arguments, std::size_t first) {
@@ -65,6 +113,10 @@ void Decoder::TakeMessage(const osc::Packet& packet, const osc::Message& message
     TakeJointOf(Dialect::kSensebloom, packet, message, now_ns, complete);
   } else if (message.address == "/joint" && message.types == "siiffffd") {
     TakeJointOf(Dialect::kZillode, packet, message, now_ns, complete);
+  } else if (message.address == "/joint" && message.types == "isfffffffff") {
+    TakeJointOf(Dialect::kNite2, packet, message, now_ns, complete);
+  } else if (message.address.starts_with("/bodies/")) {
+    TakeBody(packet, message, now_ns, complete);
   } else if (message.address == "/osceleton2/joint" && message.types == "siiffffd") {
     TakeJointOf(Dialect::kKinectSdk2, packet, message, now_ns, complete);
   } else if (message.address.starts_with("/joint/") && message.types == "fff") {
@@ -77,7 +129,39 @@ void Decoder::TakeMessage(const osc::Packet& packet, const osc::Message& message
   } else if (message.address.starts_with("/footing/")) {
     Unknown(message, "Footing's own are /footing/skeleton ,hi or ,ii and /footing/joint ,sffff");
   } else if (!IsKnown(message.address)) {
-    Unknown(message, "neither a joint of OSCeleton, VMC nor Footing");
+    Unknown(message, "neither a joint of OSCeleton, KinectV2-OSC, VMC nor Footing");
+  }
+}
+
+void Decoder::TakeBody(const osc::Packet& packet, const osc::Message& message, std::int64_t now_ns,
+                       std::vector<Decoded>& complete) {
+  const auto body = ParseBody(message.address);
+  if (body && body->kind == "hands") {
+    // KinectV2-OSC sends the state of both hands behind the joints, the right one last.
+    if (body->name == "Right") EndBody(Dialect::kKinectV2, body->user, complete);
+    return;
+  }
+  const auto arguments = packet.Of(message);
+  const auto numbered = body ? AzureJoint(body->name) : std::nullopt;
+  const bool three = message.types == "fff", seven = message.types == "fffffff";
+  const bool with_state = message.types == "fffs";
+  if (!body || body->kind != "joints" || !(numbered ? three || seven : three || with_state)) {
+    return Unknown(message, "a joint is /bodies/USER/joints/NAME ,fffs or its number ,fff");
+  }
+  const Dialect dialect = numbered ? Dialect::kAzure : Dialect::kKinectV2;
+  Numbers joint;
+  joint.name = numbered.value_or(body->name);
+  joint.user = body->user;
+  joint.numbers = Three(arguments, 0);
+  if (with_state) joint.confidence = KinectV2Confidence(std::get<std::string_view>(arguments[3]));
+  TakeJoint(dialect, joint, now_ns, complete);
+  if (numbered == std::end(kAzureJoints)[-1]) EndBody(dialect, body->user, complete);
+}
+
+void Decoder::EndBody(Dialect dialect, std::int32_t user, std::vector<Decoded>& complete) {
+  for (Frame& frame : frames_) {
+    const bool its = frame.dialect == dialect && frame.user == user;
+    if (its && !frame.joints.empty()) Complete(frame, complete);
   }
 }
 
@@ -117,8 +201,14 @@ bool Decoder::TakeJointOf(Dialect dialect, const osc::Packet& packet, const osc:
                           std::int64_t now_ns, std::vector<Decoded>& complete) {
   const auto arguments = packet.Of(message);
   Numbers joint;
-  if (dialect != Dialect::kQuartz) joint.name = std::get<std::string_view>(arguments[0]);
+  const std::size_t name = dialect == Dialect::kNite2 ? 1 : 0;
+  if (dialect != Dialect::kQuartz) joint.name = std::get<std::string_view>(arguments[name]);
   switch (dialect) {
+    case Dialect::kNite2:
+      joint.user = std::get<std::int32_t>(arguments[0]);
+      joint.numbers = Three(arguments, 2);
+      joint.confidence = std::get<float>(arguments[5]);
+      break;
     case Dialect::kSensebloom:
       joint.user = std::get<std::int32_t>(arguments[1]);
       joint.numbers = Three(arguments, 2);
@@ -148,6 +238,8 @@ bool Decoder::TakeJointOf(Dialect dialect, const osc::Packet& packet, const osc:
       if (!message.time.immediate()) joint.sent_ns = osc::ToUnixNs(message.time);
       break;
     case Dialect::kVmc:
+    case Dialect::kKinectV2:
+    case Dialect::kAzure:
       return false;
   }
   TakeJoint(dialect, joint, now_ns, complete);
@@ -197,7 +289,8 @@ void Decoder::TakeJoint(Dialect dialect, const Numbers& joint, std::int64_t now_
   if (frame->joints.size() == 1) frame->arrived_ns = now_ns;
   frame->used_ns = now_ns;
   frame->sent_ns = joint.sent_ns;
-  if (frame->joints.best() == kJoints) Complete(*frame, complete);
+  // KinectV2-OSC has better names for some joints behind the fifteenth.
+  if (frame->joints.best() == kJoints && dialect != Dialect::kKinectV2) Complete(*frame, complete);
 }
 
 Decoder::Frame* Decoder::FrameOf(Dialect dialect, std::int32_t user, std::int64_t now_ns) {

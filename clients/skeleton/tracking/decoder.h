@@ -31,7 +31,8 @@ struct DecoderCounts {
 
 /// Packets to skeletons. The dialects differ by address and types, so several may arrive at once.
 /// A skeleton is complete when its bundle ends; of a sender that puts each joint into a packet of
-/// its own, when all 15 joints have come, when the next frame begins, or after kPatienceNs. Memory
+/// its own, when all 15 joints or the sender's last message of a person have come, when the next
+/// frame begins, or after kPatienceNs. Memory
 /// is bounded: kMostPeople at once. A plain value; time is an argument.
 class Decoder {
  public:
@@ -72,6 +73,8 @@ class Decoder {
 
   void TakeMessage(const osc::Packet& packet, const osc::Message& message, std::int64_t now_ns,
                    std::vector<Decoded>& complete);
+  void TakeBody(const osc::Packet& packet, const osc::Message& message, std::int64_t now_ns,
+                std::vector<Decoded>& complete);
   bool TakeJointOf(Dialect dialect, const osc::Packet& packet, const osc::Message& message,
                    std::int64_t now_ns, std::vector<Decoded>& complete);
   void TakeHead(const osc::Packet& packet, const osc::Message& message, std::int64_t now_ns,
@@ -82,6 +85,7 @@ class Decoder {
   void TakeVmc(const osc::Packet& packet, const osc::Message& message, std::int64_t now_ns,
                std::vector<Decoded>& complete);
   void Complete(Frame& frame, std::vector<Decoded>& complete);
+  void EndBody(Dialect dialect, std::int32_t user, std::vector<Decoded>& complete);
   void Unknown(const osc::Message& message, const std::string& why);
   void Report(Problem problem, std::string text);
 

@@ -15,7 +15,8 @@ namespace footing::skeleton {
 namespace {
 
 constexpr std::array<std::string_view, kDialects> kDialectNames = {
-    "sensebloom", "quartz", "zillode", "kinect-sdk2", "footing", "vmc"};
+    "sensebloom", "quartz", "zillode",       "kinect-sdk2",     "footing",
+    "vmc",        "nite2",  "kinect-v2-osc", "azure-kinect-osc"};
 constexpr std::array<std::string_view, 5> kUnitNames = {"dialect", "normalised", "mm", "cm", "m"};
 
 template <typename Enum, std::size_t N>
@@ -33,9 +34,12 @@ Units UnitsOf(Dialect dialect, const DialectOptions& options) {
       return Units::kNormalised;
     case Dialect::kZillode:
     case Dialect::kKinectSdk2:
+    case Dialect::kNite2:
+    case Dialect::kAzure:
       return Units::kMillimetres;
     case Dialect::kFooting:
     case Dialect::kVmc:
+    case Dialect::kKinectV2:
       break;
   }
   return Units::kMetres;
@@ -61,24 +65,30 @@ Linear ToMetres(Units units) {
   return {Eigen::Array3d::Ones(), Eigen::Array3d::Zero()};
 }
 
-/// The dialect's axes along K's: OpenNI has x to the camera's right; KinectSDK2 has Kinect's axes,
-/// which are K's, with y negated; VMC has those of Unity (x to the person's right, y up, z where
-/// the person looks), and the camera stands in front of the person.
+/// The dialect's axes along K's: OpenNI and NiTE have x to the camera's right; Kinect v2's axes are
+/// K's; KinectSDK2 has them with y negated; Azure Kinect has x to the camera's right and y down;
+/// VMC has those of Unity (x to the person's right, y up, z where the person looks), and the camera
+/// stands in front of the person.
 Eigen::Array3d Signs(Dialect dialect, const DialectOptions& options) {
   Eigen::Array3d signs = Eigen::Array3d::Ones();
   switch (dialect) {
     case Dialect::kSensebloom:
     case Dialect::kQuartz:
     case Dialect::kZillode:
+    case Dialect::kNite2:
       signs.x() = -1;
       break;
     case Dialect::kKinectSdk2:
       signs.y() = -1;
       break;
+    case Dialect::kAzure:
+      signs.x() = signs.y() = -1;
+      break;
     case Dialect::kVmc:
       signs.z() = -1;
       break;
     case Dialect::kFooting:
+    case Dialect::kKinectV2:
       break;
   }
   if (options.flip_y) signs.y() = -signs.y();
@@ -166,6 +176,9 @@ std::string JointMessage(Dialect dialect, const Skeleton& skeleton, std::size_t 
       return osc::WriteMessage("/footing/joint", arguments);
     }
     case Dialect::kVmc:
+    case Dialect::kNite2:
+    case Dialect::kKinectV2:
+    case Dialect::kAzure:
       break;
   }
   return "";
@@ -175,7 +188,7 @@ std::string JointMessage(Dialect dialect, const Skeleton& skeleton, std::size_t 
 
 std::vector<std::string> Encode(Dialect dialect, const DialectOptions& options,
                                 const Skeleton& skeleton) {
-  if (dialect == Dialect::kVmc) return {};
+  if (dialect >= Dialect::kVmc) return {};
   const Skeleton sent = WithSides(options, skeleton);
   std::vector<std::string> messages;
   if (dialect == Dialect::kFooting) {

@@ -15,7 +15,8 @@
 #include "clients/skeleton/tracking/osc.h"
 
 /// OSC dialects of programs that send skeletons (docs/skeleton.md has each in bytes). Read from the
-/// sources of Sensebloom/OSCeleton, Zillode/OSCeleton-OpenNI and Zillode/OSCeleton-KinectSDK2; the
+/// sources of Sensebloom/OSCeleton, Zillode/OSCeleton-OpenNI, Zillode/OSCeleton-KinectSDK2,
+/// scazan/AIam (tracking/nite2), microcosm/KinectV2-OSC and adenprince/azure-kinect-osc; the
 /// Virtual Motion Capture protocol from its specification.
 namespace footing::skeleton {
 
@@ -27,8 +28,11 @@ enum class Dialect : std::uint8_t {
   kKinectSdk2,  ///< /osceleton2/joint ,siiffffd, one a packet
   kFooting,     ///< /footing/skeleton and /footing/joint
   kVmc,         ///< /VMC/Ext/Bone/Pos
+  kNite2,       ///< /joint ,isfffffffff
+  kKinectV2,    ///< /bodies/USER/joints/NAME ,fffs, one a packet
+  kAzure,       ///< /bodies/USER/joints/NUMBER ,fff or ,fffffff, one a packet
 };
-inline constexpr std::size_t kDialects = 6;
+inline constexpr std::size_t kDialects = 9;
 
 /// Name of a dialect on the command line, and the dialect of a name.
 std::string_view NameOf(Dialect dialect);
@@ -36,7 +40,8 @@ std::optional<Dialect> DialectOf(std::string_view name);
 
 /// Unit of a dialect's three coordinates.
 enum class Units : std::uint8_t {
-  kOfDialect,   ///< Normalised for kSensebloom and kQuartz, metres for kFooting and kVmc, else mm.
+  kOfDialect,  ///< Normalised for kSensebloom and kQuartz, metres for kFooting, kVmc and kKinectV2,
+               ///< else mm.
   kNormalised,  ///< OSCeleton's: x = (1280 - X)/2560, y = (960 - Y)/1920, z = Z/1280, in mm.
   kMillimetres,
   kCentimetres,
@@ -69,8 +74,8 @@ Eigen::Vector3d FromCamera(Dialect dialect, const DialectOptions& options,
 
 /// A skeleton as the packets that a sender of the dialect would send. What the dialect cannot say
 /// is lost: confidences below 0.5 (kSensebloom, kQuartz) or 0.1 (kZillode) leave a joint out,
-/// kKinectSdk2 knows 1, 0.5 and 0.1, and only it, kZillode and kFooting have a time. kVmc is not
-/// written: nothing.
+/// kKinectSdk2 knows 1, 0.5 and 0.1, and only it, kZillode and kFooting have a time. The dialects
+/// from kVmc on are not written: nothing.
 std::vector<std::string> Encode(Dialect dialect, const DialectOptions& options,
                                 const Skeleton& skeleton);
 

@@ -22,6 +22,8 @@ std::vector<std::string> Sound() {
     for (std::string& packet : Encode(dialect, {}, person)) packets.push_back(std::move(packet));
   const osc::Argument bone[] = {std::string_view("LeftHand"), 0.f, 0.1f, 0.f, 0.f, 0.f, 0.f, 1.f};
   packets.push_back(osc::WriteMessage("/VMC/Ext/Bone/Pos", bone));
+  const osc::Argument body[] = {0.1f, 0.2f, 2.f, std::string_view("Inferred")};
+  packets.push_back(osc::WriteMessage("/bodies/72057594037928017/joints/HandLeft", body));
   return packets;
 }
 
