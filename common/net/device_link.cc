@@ -29,7 +29,9 @@ constexpr auto kRedial = std::chrono::milliseconds(250);
 /// The command that starts a footingd which listens there: by default it does at the user's own.
 std::string FootingdFor(const transport::Address& to) {
   if (to.Text() == transport::DefaultAddress("devices").Text()) return "footingd";
-  return "footingd --source stream:" + to.Text() + (BySession(to) ? " --set token_file=FILE" : "");
+  const std::string in_clear = to.kind == transport::Address::Kind::kTcp ? " --insecure-lan" : "";
+  return "footingd --source stream:" + to.Text() +
+         (BySession(to) ? in_clear + " --set token_file=FILE" : "");
 }
 
 }  // namespace
@@ -138,8 +140,8 @@ class DeviceLink::Implementation : public std::enable_shared_from_this<Implement
     OnMessage(message);
   }
 
-  /// Whether this is the answer of a port for clients, such as one that speaks TLS. No output of the
-  /// device socket reads as one: its second field is a number, not a text.
+  /// Whether this is the answer of a port for clients, such as one that speaks TLS. No output of
+  /// the device socket reads as one: its second field is a number, not a text.
   bool RefusedAsClient(std::string_view payload) {
     v1::Envelope answer;
     if (!options_.to.OverTcp() ||

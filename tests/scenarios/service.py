@@ -221,12 +221,19 @@ def check_wrong_sockets(manager):
 
 
 def check_metrics(manager):
-    """Metrics on a passed socket of loopback speak in clear, to whoever reaches it; beyond loopback they are refused."""
+    """Metrics on a passed socket of loopback speak in clear, to whoever reaches it; beyond loopback they are refused.
+    Devices of other hosts come over a passed socket of TCP within TLS."""
     manager.sockets["metrics"] = socket.create_server(("127.0.0.1", 0))
     host, port = manager.sockets["metrics"].getsockname()
     words = ("--listen", "fd:sensor", "--source", "stream:fd:devices", "--metrics", "fd:metrics")
-    manager.start(*words, names=(*SOCKETS, "metrics"))
+    manager.sockets["far"] = socket.create_server(("127.0.0.1", 0))
+    token = manager.folder / "token"
+    token.write_text("0123456789abcdef")
+    token.chmod(0o600)
+    manager.start(*words, "--source", "stream:fd:far", "--set", f"token_file={token}", names=(*SOCKETS, "metrics", "far"))
     manager.wait_for("READY=1", 60)
+    text, port_of_far = manager.log.read_text(), manager.sockets["far"].getsockname()[1]
+    assert f"listening on tls:127.0.0.1:{port_of_far}" in text and "devices of clients with the role control" in text, text
     with urllib.request.urlopen(f"http://{host}:{port}/metrics", timeout=30) as answer:
         assert b"footing_uptime_seconds" in answer.read()
     check_farewell(manager)

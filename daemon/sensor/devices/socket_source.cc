@@ -93,12 +93,12 @@ v1::DeviceEnvelope RefusedMessage(std::uint32_t slot, const std::string& why) {
 
 }  // namespace
 
-/// How messages leave for a connection, and what its host is.
+/// How messages leave for a connection, and what it is.
 struct Carrier {
   std::function<void(std::uint64_t connection, const v1::DeviceEnvelope&)> send;
   /// Ends a connection that does not keep to the protocol; its program gets the reason, too.
   std::function<void(std::uint64_t connection, const std::string& why)> refuse;
-  bool same_clock = true;  ///< Its monotonic clock is footingd's, so that its stamps count.
+  bool sessions = false;  ///< Stamps by the clocks of their hosts do not count.
 };
 
 /// The devices of many connections, whatever carries their messages.
@@ -203,7 +203,7 @@ class Attachments {
   void Pass(const auto& handler, std::int64_t received_ns, const auto& message) const {
     if (!handler) return;
     auto frame = wire::FromProto(message);
-    if (!carrier_.same_clock) frame.sent_ns = 0;
+    if (carrier_.sessions) frame.sent_ns = 0;
     handler(received_ns, frame);
   }
 
@@ -219,7 +219,11 @@ class Attachments {
     const DeviceHandle device = new_handle_();
     connection.slots[attach.slot()] = device;
     places_[device] = {id, attach.slot()};
-    if (const auto why = handlers_.on_attach(device, IdentityOf(attach)); !why.empty()) {
+    DeviceIdentity identity = IdentityOf(attach);
+    if (carrier_.sessions) {
+      identity.place = "session " + std::to_string(id) + ", slot " + std::to_string(attach.slot());
+    }
+    if (const auto why = handlers_.on_attach(device, identity); !why.empty()) {
       RefuseDevice(id, attach.slot(), why);
     }
   }
@@ -437,7 +441,7 @@ class SessionSource::Implementation {
                    send(session, RefusedMessage(0, why));
                    end(session, why);
                  },
-                 false}) {}
+                 true}) {}
 
   Attachments devices;
   bool stopped = false;

@@ -84,6 +84,7 @@ TEST_F(SessionSourceTest, EachSessionHasSlotsOfItsOwnAndItsEndDetachesThem) {
   sessions_.Take(7, 1, Attaching(0, "a"));
   sessions_.Take(8, 1, Attaching(0, "b"));
   sessions_.Take(8, 1, Attaching(1, "taken"));
+  EXPECT_EQ(identities_.back().place, "session 8, slot 1");
   sessions_.Take(7, 2, Reporting(0));
   sessions_.Take(8, 2, Reporting(0));
   EXPECT_THAT(reported_, ElementsAre(1, 2));
