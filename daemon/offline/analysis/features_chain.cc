@@ -15,11 +15,13 @@ std::vector<features::Member> Members(bool with_right) {
 
 }  // namespace
 
-Chain::Chain(const std::vector<features::Member>& members) : rig_("eval", members) {
+Chain::Chain(const std::vector<features::Member>& members, const features::Config& config)
+    : rig_("eval", members, config) {
   for (const features::Member& member : members) last_.emplace_back().device = member.device;
 }
 
-Chain::Chain(bool with_right) : Chain(Members(with_right)) {}
+Chain::Chain(bool with_right, const features::Config& config)
+    : Chain(Members(with_right), config) {}
 
 void Chain::Add(std::uint32_t device, std::int64_t sampled_ns,
                 const Eigen::Vector3d& specific_force_mps2, std::uint32_t clipped_axes) {
@@ -37,8 +39,9 @@ void Chain::Add(std::uint32_t device, std::int64_t sampled_ns,
   rig_.AddSample(sample);
 }
 
-std::vector<Tick> Run(const std::vector<wrists::TimedReading>& readings) {
-  Chain chain(true);
+std::vector<Tick> Run(const std::vector<wrists::TimedReading>& readings,
+                      const features::Config& config) {
+  Chain chain(true, config);
   std::vector<Tick> ticks;
   ticks.reserve(readings.size());
   for (const auto& reading : readings) {

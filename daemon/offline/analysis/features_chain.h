@@ -16,9 +16,9 @@ inline constexpr std::uint32_t kRightDevice = 2;
 /// The pure chain of footingd behind calibration: filter, then features, of one rig.
 class Chain {
  public:
-  explicit Chain(const std::vector<features::Member>& members);
+  explicit Chain(const std::vector<features::Member>& members, const features::Config& config = {});
   /// Hands: without a right one the rig has the left one alone.
-  explicit Chain(bool with_right);
+  explicit Chain(bool with_right, const features::Config& config = {});
   /// A device that is not a member is a bug of the caller.
   void Add(std::uint32_t device, std::int64_t sampled_ns,
            const Eigen::Vector3d& specific_force_mps2, std::uint32_t clipped_axes = 0);
@@ -41,6 +41,7 @@ struct Tick {
 };
 
 /// Runs synthetic motion through the chain: one tick a reading.
-std::vector<Tick> Run(const std::vector<wrists::TimedReading>& readings);
+std::vector<Tick> Run(const std::vector<wrists::TimedReading>& readings,
+                      const features::Config& config = {});
 
 }  // namespace footing::eval

@@ -1,6 +1,7 @@
 #include "daemon/offline/eval/features.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -40,9 +41,15 @@ struct FeatureOptions {
   int mounting_trials = 0;
   std::string standing;
   std::string walking;
+  bool decisions = false;
+  std::string features = "best";
   int trials = 200;
   std::uint64_t seed = 1;
 };
+
+features::Config ConfigOf(const FeatureOptions& options) {
+  return *features::Named(options.features);
+}
 
 nlohmann::json Row(double t_s, const stream::RigFeatures& rig) {
   const auto& left = rig.devices.front();
@@ -92,7 +99,7 @@ Result<nlohmann::json> EvaluateCsv(const FeatureOptions& options) {
   const auto right_clipped =
       right ? ClippedAxes(*right, options.range_mps2) : std::vector<std::uint32_t>{};
   const std::size_t count = right ? std::min(left->size(), right->size()) : left->size();
-  Chain chain(right.has_value());
+  Chain chain(right.has_value(), ConfigOf(options));
   RowClock clock;
   auto rows = nlohmann::json::array();
   for (std::size_t i = 0; i < count; ++i) {
@@ -118,7 +125,7 @@ Result<nlohmann::json> EvaluateGrt(const FeatureOptions& options) {
   for (std::size_t i = 0; i < recording->rows.size(); ++i) {
     const auto& row = recording->rows[i];
     // Stretches were recorded one by one; what follows another starts again.
-    if (!chain || row.stretch != stretch) chain.emplace(false);
+    if (!chain || row.stretch != stretch) chain.emplace(false, ConfigOf(options));
     stretch = row.stretch;
     const double t_s = static_cast<double>(i) / rate_hz;
     const auto now_ns = RoundToNanoseconds(t_s);
@@ -145,25 +152,28 @@ Result<nlohmann::json> EvaluateMounting(const FeatureOptions& options) {
     return UsageError("--standing and --walking belong together");
   }
   if (options.standing.empty()) {
-    return MeasureMounting(SyntheticWalk(), options.mounting_trials, options.seed);
+    return MeasureMounting(SyntheticWalk(), options.mounting_trials, options.seed,
+                           ConfigOf(options));
   }
   const auto walk = RecordedWalk(options.standing, options.walking);
   if (!walk) return walk.error();
-  return MeasureMounting(*walk, options.mounting_trials, options.seed);
+  return MeasureMounting(*walk, options.mounting_trials, options.seed, ConfigOf(options));
 }
 
 Result<nlohmann::json> Evaluate(const FeatureOptions& options) {
   const int inputs = (options.left.empty() ? 0 : 1) + (options.grt.empty() ? 0 : 1) +
                      (options.synthetic ? 1 : 0) + (options.delays ? 1 : 0) +
-                     (options.mounting_trials > 0 ? 1 : 0);
+                     (options.decisions ? 1 : 0) + (options.mounting_trials > 0 ? 1 : 0);
   if (inputs != 1) {
     return UsageError(
-        "features needs exactly one of --left, --grt, --synthetic, --delays and "
+        "features needs exactly one of --left, --grt, --synthetic, --delays, --decisions and "
         "--mounting-trials");
   }
+  const features::Config config = ConfigOf(options);
   if (options.mounting_trials > 0) return EvaluateMounting(options);
-  if (options.synthetic) return MeasureAccuracy(options.trials, options.seed);
-  if (options.delays) return MeasureDelays(options.trials, options.seed);
+  if (options.synthetic) return MeasureAccuracy(options.trials, options.seed, config);
+  if (options.delays) return MeasureDelays(options.trials, options.seed, config);
+  if (options.decisions) return MeasureDecisions(options.trials, options.seed, config);
   return options.grt.empty() ? EvaluateCsv(options) : EvaluateGrt(options);
 }
 
@@ -189,6 +199,13 @@ void AddFeaturesCommand(CLI::App& app, Shared& shared) {
                     "Feature errors on synthetic motion, with their limits");
   command->add_flag("--delays", options->delays,
                     "Feature delays after synthetic changes, with their limits");
+  command->add_flag("--decisions", options->decisions,
+                    "Gaits that the features of synthetic motion decide on, beside those meant");
+  command
+      ->add_option("--features", options->features,
+                   "best, or paper: equations (3) and (4) of the gait paper as printed")
+      ->check(CLI::IsMember({"best", "paper"}))
+      ->capture_default_str();
   command
       ->add_option(
           "--mounting-trials", options->mounting_trials,
@@ -284,13 +301,15 @@ void Count(const Trial& trial, const stream::RigFeatures& rig, Totals& totals) {
   totals.confused += error_rad > kPi / 2 ? 1 : 0;
 }
 
-nlohmann::json MeasureVariant(int trials, std::uint64_t seed, bool clip) {
+nlohmann::json MeasureVariant(int trials, std::uint64_t seed, bool clip,
+                              const features::Config& config) {
   noise::Random random(seed);
   Totals totals;
   for (int i = 0; i < trials; ++i) {
     const Trial trial = Draw(random, clip);
     const wrists::HandMotion motion({trial.segment}, trial.shape, 0, trial.start_angle_rad);
-    const auto ticks = Run(Record(motion, trial.sensor, seed + static_cast<std::uint64_t>(i)));
+    const auto ticks =
+        Run(Record(motion, trial.sensor, seed + static_cast<std::uint64_t>(i)), config);
     const double settled_s = 0.5 + 3 / trial.segment.frequency_hz;
     for (const Tick& tick : ticks) {
       if (tick.t_s >= settled_s) Count(trial, tick.features, totals);
@@ -309,7 +328,7 @@ nlohmann::json MeasureVariant(int trials, std::uint64_t seed, bool clip) {
 
 }  // namespace
 
-nlohmann::json MeasureAccuracy(int trials, std::uint64_t seed) {
+nlohmann::json MeasureAccuracy(int trials, std::uint64_t seed, const features::Config& config) {
   return {{"trials", trials},
           {"seed", seed},
           {"conditions",
@@ -317,8 +336,8 @@ nlohmann::json MeasureAccuracy(int trials, std::uint64_t seed) {
            "degrees, 100 Hz, 38 mg counts, 3.1 mg noise; amplitude 4 to 18 m/s2, clipped 24 to 40 "
            "m/s2 in any direction of the y-z plane at +-3 g; every tick after 3 cycles and 0.5 s"},
           {"amplitude_allowed", "5 % or one count, whichever is more"},
-          {"free", MeasureVariant(trials, seed, false)},
-          {"clipped", MeasureVariant(trials, seed, true)}};
+          {"free", MeasureVariant(trials, seed, false, config)},
+          {"clipped", MeasureVariant(trials, seed, true, config)}};
 }
 
 namespace {
@@ -524,7 +543,8 @@ struct Sample {
   double slower_hz = 1;
 };
 
-std::vector<Sample> RunTrials(int trials, std::uint64_t seed, const DrawChange& draw) {
+std::vector<Sample> RunTrials(int trials, std::uint64_t seed, const features::Config& config,
+                              const DrawChange& draw) {
   noise::Random random(seed);
   std::vector<Sample> samples;
   for (int i = 0; i < trials; ++i) {
@@ -532,7 +552,7 @@ std::vector<Sample> RunTrials(int trials, std::uint64_t seed, const DrawChange& 
     const auto shape = random.Uniform() < 0.5 ? wrists::Shape() : wrists::WristShape();
     const wrists::HandMotion motion({change.before, change.after}, shape, 0,
                                     random.Uniform(0, 2 * kPi));
-    const auto ticks = Run(Record(motion, {}, seed + static_cast<std::uint64_t>(i)));
+    const auto ticks = Run(Record(motion, {}, seed + static_cast<std::uint64_t>(i)), config);
     samples.push_back({DelayOf(ticks, change.before.duration_s, change.right), change.slower_hz});
   }
   return samples;
@@ -625,10 +645,10 @@ DrawChange PhaseJump(double from_rad, double to_rad) {
 
 }  // namespace
 
-nlohmann::json MeasureDelays(int trials, std::uint64_t seed) {
+nlohmann::json MeasureDelays(int trials, std::uint64_t seed, const features::Config& config) {
   const auto start_s = [](const Sample&) { return 0.3; };
   const auto stop_s = [](const Sample& s) { return s.slower_hz >= 1.5 ? 0.3 : 0.45 / s.slower_hz; };
-  const auto run = [&](const DrawChange& draw) { return RunTrials(trials, seed, draw); };
+  const auto run = [&](const DrawChange& draw) { return RunTrials(trials, seed, config, draw); };
   const auto moving = FromStill([](double) { return MovingIs(true); });
   const auto frequency = FromStill([](double f) { return FrequencyIs(f); });
   const auto phase = FromStill([](double) { return PhaseIs(kPi); });
@@ -644,6 +664,99 @@ nlohmann::json MeasureDelays(int trials, std::uint64_t seed) {
       {"frequency_3_to_1_hz", CyclesRow(run(FrequencyJump(3, 1)))},
       {"phase_out_to_in", CyclesRow(run(PhaseJump(kPi, 0)))},
       {"phase_in_to_out", CyclesRow(run(PhaseJump(0, kPi)))}};
+}
+
+namespace {
+
+/// Gaits that two remotes ask for (Figure 9 of the gait paper); none: features are missing.
+constexpr std::array kDecisions = {"step", "walk", "run", "jump", "none"};
+constexpr std::size_t kUndecided = kDecisions.size() - 1;
+using DecisionCounts =
+    std::array<std::array<std::size_t, kDecisions.size()>, kUndecided>;  // Meant, found.
+constexpr double kRunHz = 2;
+constexpr double kStretchS = 4;
+constexpr double kDecidedAfterS = 2.5;  // Two cycles of 0.8 Hz.
+
+std::size_t GaitOf(const stream::RigFeatures& rig) {
+  const auto count = [&rig](bool stream::DeviceFeatures::*flag) {
+    return std::count_if(rig.devices.begin(), rig.devices.end(),
+                         [flag](const auto& device) { return device.*flag; });
+  };
+  if (count(&stream::DeviceFeatures::moving) == 0) return 0;
+  const stream::PairFeatures& pair = rig.pairs.front();
+  if (!pair.phase_valid) return kUndecided;
+  if (std::abs(pair.phase_rad) < kPi / 2) return 3;
+  const auto shown = count(&stream::DeviceFeatures::frequency_valid);
+  if (shown == 0) return kUndecided;
+  double sum_hz = 0;  // The frequency of a device that shows none is 0.
+  for (const auto& device : rig.devices) sum_hz += device.frequency_hz;
+  return sum_hz / static_cast<double>(shown) < kRunHz ? 1 : 2;
+}
+
+/// A stretch of that gait, clear of the borders between the gaits.
+wrists::Segment DrawGait(std::size_t gait, noise::Random& random) {
+  wrists::Segment segment = Still();
+  segment.duration_s = kStretchS;
+  if (gait == 0) return segment;
+  segment =
+      Swing(gait == 2 ? random.Uniform(2.3, 4) : random.Uniform(0.8, 1.7),
+            (gait == 3 ? 0 : kPi) + random.Uniform(-0.6, 0.6), DrawAmplitude(random), kStretchS);
+  segment.roll_rad = DegreesToRadians(random.Uniform(-25, 25));
+  segment.pitch_rad = DegreesToRadians(random.Uniform(-25, 25));
+  return segment;
+}
+
+nlohmann::json DecisionSummary(const DecisionCounts& counts) {
+  nlohmann::json table = nlohmann::json::object();
+  double right = 0, none = 0, sum = 0;
+  for (std::size_t meant = 0; meant < kUndecided; ++meant) {
+    for (std::size_t found = 0; found <= kUndecided; ++found) {
+      const std::size_t ticks = counts[meant][found];
+      table[kDecisions[meant]][kDecisions[found]] = ticks;
+      sum += static_cast<double>(ticks);
+    }
+    right += static_cast<double>(counts[meant][meant]);
+    none += static_cast<double>(counts[meant][kUndecided]);
+  }
+  return {{"ticks_by_meant_and_found", table},
+          {"right_share", right / sum},
+          {"wrong_share", (sum - right - none) / sum},
+          {"none_share", none / sum}};
+}
+
+}  // namespace
+
+nlohmann::json MeasureDecisions(int trials, std::uint64_t seed, const features::Config& config) {
+  DecisionCounts all{}, settled{};
+  noise::Random random(seed);
+  for (int i = 0; i < trials; ++i) {
+    std::array<std::size_t, 2 * kUndecided> meant{};
+    std::vector<wrists::Segment> script;
+    for (std::size_t n = 0; n < meant.size(); ++n) {
+      // Never the same twice in a row.
+      const auto further = static_cast<std::size_t>(random.Uniform(1, kUndecided));
+      meant[n] = n == 0 ? 0 : (meant[n - 1] + further) % kUndecided;
+      script.push_back(DrawGait(meant[n], random));
+    }
+    const auto shape = random.Uniform() < 0.5 ? wrists::Shape() : wrists::WristShape();
+    const wrists::HandMotion motion(script, shape, 0, random.Uniform(0, 2 * kPi));
+    for (const Tick& tick : Run(Record(motion, {}, seed + static_cast<std::uint64_t>(i)), config)) {
+      const auto n = std::min(meant.size() - 1, static_cast<std::size_t>(tick.t_s / kStretchS));
+      const std::size_t found = GaitOf(tick.features);
+      ++all[meant[n]][found];
+      const double since_s = tick.t_s - static_cast<double>(n) * kStretchS;
+      if (since_s >= kDecidedAfterS) ++settled[meant[n]][found];
+    }
+  }
+  return {{"trials", trials},
+          {"seed", seed},
+          {"conditions",
+           "8 stretches of 4 s: still, or walk 0.8 to 1.7 Hz, run 2.3 to 4 Hz and jump 0.8 to 1.7 "
+           "Hz, phase within 0.6 rad of out and in, amplitude 4 to 18 m/s2, roll and pitch within "
+           "25 degrees, half sines and half wrist-like"},
+          {"all", DecisionSummary(all)},
+          {"settled", DecisionSummary(settled)},
+          {"settled_is", "from 2.5 s after a change on"}};
 }
 
 }  // namespace footing::eval

@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "daemon/offline/eval/report.h"
+#include "daemon/sensor/features/config.h"
 
 namespace footing::eval {
 
@@ -18,7 +19,7 @@ void AddFeaturesCommand(CLI::App& app, Shared& shared);
 
 /// Errors of the features on synthetic periodic motion (0.5 to 4.5 Hz, peaks from 4 m/s², 8-bit
 /// counts, the real sensor's noise, 100 Hz), free and clipped at +-3 g, beside the bars.
-nlohmann::json MeasureAccuracy(int trials, std::uint64_t seed);
+nlohmann::json MeasureAccuracy(int trials, std::uint64_t seed, const features::Config& config = {});
 
 /// Rows `ax,ay,az` in m/s² of the sensor frame S; a first line that is not numbers is a header. An
 /// error names the line.
@@ -45,6 +46,11 @@ Result<GrtRecording> ReadGrt(const std::string& path);
 
 /// Delays from a change of motion to the right feature, which then stays right to the end of the
 /// stretch: start, stop, 1 Hz to 3 Hz and back, out of phase to in phase and back, beside the bars.
-nlohmann::json MeasureDelays(int trials, std::uint64_t seed);
+nlohmann::json MeasureDelays(int trials, std::uint64_t seed, const features::Config& config = {});
+
+/// Which gait Figure 9 of the gait paper makes of the features, tick by tick, where the synthetic
+/// motion meant another: step, walk, run, jump, or none while features are missing.
+nlohmann::json MeasureDecisions(int trials, std::uint64_t seed,
+                                const features::Config& config = {});
 
 }  // namespace footing::eval

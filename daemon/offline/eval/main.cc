@@ -24,6 +24,7 @@ namespace {
 constexpr char kExamples[] =
     "  footing-stream sample .     # writes the files that these examples read\n"
     "  footing-eval features --left left.csv --right right.csv --rate-hz 100 --json\n"
+    "  footing-eval features --decisions --features paper --trials 5 --seed 1 --json\n"
     "  footing-eval board --corners corners.csv --json\n"
     "  footing-eval clock --link poor --json\n"
     "  footing-eval gait --gait walk --speed 1 --seconds 60 --trials 1 --seed 1 --json\n"

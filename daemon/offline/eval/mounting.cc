@@ -135,8 +135,9 @@ void Compare(const WalkTruth& truth, const stream::RigFeatures& rig, MountingErr
 
 /// The features of the walking part, samples turned as footingd does.
 void Measure(const MountingWalk& walk, const std::vector<Samples>& sides,
-             const Quaterniond (&rotations_MS)[2], MountingErrors& errors) {
-  Chain chain(true);
+             const Quaterniond (&rotations_MS)[2], const features::Config& config,
+             MountingErrors& errors) {
+  Chain chain(true, config);
   for (std::size_t i = 0; i < sides[0].size(); ++i) {
     const double t_s = NanosecondsToSeconds(sides[0][i].sampled_ns);
     if (t_s < walk.walk_from_s - 0.5) continue;
@@ -157,18 +158,17 @@ Quaterniond RandomRotation(noise::Random& random) {
 
 }  // namespace
 
-nlohmann::json MeasureMounting(const MountingWalk& walk, int trials, std::uint64_t seed) {
+nlohmann::json MeasureMounting(const MountingWalk& walk, int trials, std::uint64_t seed,
+                               const features::Config& config) {
   noise::Random random(seed);
-  MountingErrors perfect;
-  MountingErrors solved;
-  MountingErrors rotation;
+  MountingErrors perfect, solved, rotation;
   int refused = 0;
   std::string problem;
   const Quaterniond none[2] = {Quaterniond::Identity(), Quaterniond::Identity()};
   for (int trial = 0; trial < trials; ++trial) {
     const std::uint64_t noise = seed + 1000 + 2 * static_cast<std::uint64_t>(trial);
     const Flaw flaws[2] = {DrawFlaw(random), DrawFlaw(random)};
-    Measure(walk, Record(walk, none, flaws, noise), none, perfect);
+    Measure(walk, Record(walk, none, flaws, noise), none, config, perfect);
     const Quaterniond truth[2] = {RandomRotation(random), RandomRotation(random)};
     const auto turned = Record(walk, truth, flaws, noise + 1);
     Quaterniond found[2];
@@ -184,7 +184,7 @@ nlohmann::json MeasureMounting(const MountingWalk& walk, int trials, std::uint64
           RadiansToDegrees(mounting.rotation_MS.angularDistance(truth[side])));
     }
     if (ok) {
-      Measure(walk, turned, found, solved);
+      Measure(walk, turned, found, config, solved);
     } else {
       ++refused;
     }

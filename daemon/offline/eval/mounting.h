@@ -12,6 +12,7 @@
 
 #include "common/base/result.h"
 #include "common/stream/device.h"
+#include "daemon/sensor/features/config.h"
 
 namespace footing::eval {
 
@@ -58,7 +59,8 @@ Result<MountingWalk> RecordedWalk(const std::string& standing, const std::string
 /// and how each solved rotation differs from the true one. Sensors round as footingd's reports and
 /// their own calibrations do. `bar` is 1.5 times the 95th percentile of what perfect reaches;
 /// `declared_bar` 1.5 times what `features --synthetic` holds a perfect mounting to.
-nlohmann::json MeasureMounting(const MountingWalk& walk, int trials, std::uint64_t seed);
+nlohmann::json MeasureMounting(const MountingWalk& walk, int trials, std::uint64_t seed,
+                               const features::Config& config = {});
 
 /// A quantity frame by frame.
 using Track = std::vector<Eigen::Vector3d>;

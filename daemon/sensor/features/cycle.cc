@@ -79,6 +79,11 @@ double HalfPeakToPeak(const Block& samples, const Eigen::Vector3d& mean) {
 
 }  // namespace
 
+double ParabolaMinimum(double before, double middle, double after) {
+  const double bend = before - 2 * middle + after;
+  return bend > 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+}
+
 Eigen::ArrayXd CycleWeights(double steps) {
   const int whole = static_cast<int>(std::floor(steps));
   const double part = steps - whole;
@@ -290,6 +295,41 @@ bool Align(const SampleGrid& grid, int late, double steps, const SwingEnd& end,
 }
 
 }  // namespace
+
+Eigen::ArrayXd PrintedCorrelation(const Block& one, const Block& other) {
+  const Eigen::Index count = one.rows();
+  Block weighted = one;
+  // W(T - tp) is 0: its point is left out.
+  const auto newest = static_cast<double>(count);
+  weighted.array().colwise() *= Eigen::ArrayXd::LinSpaced(count, 1 / newest, 1);
+  Eigen::ArrayXd curve(other.rows() - count + 1);
+  for (Eigen::Index lag = 0; lag < curve.size(); ++lag) {
+    curve(lag) = weighted.cwiseProduct(other.middleRows(other.rows() - count - lag, count)).sum();
+  }
+  return curve;
+}
+
+PhaseEstimate PhaseAsPrinted(const SampleGrid& left, const SampleGrid& right, double period_s) {
+  const int cycle = static_cast<int>(std::lround(period_s * kGridHz));
+  const std::int64_t common = std::min(left.newest_index(), right.newest_index());
+  const std::int64_t late_left = left.newest_index() - common;
+  const std::int64_t late_right = right.newest_index() - common;
+  if (cycle < 2 || cycle + late_left > left.size() || 2 * cycle + late_right > right.size()) {
+    return {};
+  }
+  Block one = left.Filtered(cycle + static_cast<int>(late_left)).topRows(cycle);
+  Block other = right.Filtered(2 * cycle + static_cast<int>(late_right)).topRows(2 * cycle);
+  one.rowwise() -= one.colwise().mean().eval();
+  other.rowwise() -= other.bottomRows(cycle).colwise().mean().eval();
+  const Eigen::ArrayXd curve = PrintedCorrelation(one, other);
+  Eigen::Index best = 0;
+  curve.maxCoeff(&best);
+  auto lag = static_cast<double>(best);
+  if (best > 0 && best < cycle) {
+    lag += ParabolaMinimum(-curve(best - 1), -curve(best), -curve(best + 1));
+  }
+  return {true, WrapAngle(2 * kPi * lag / (period_s * kGridHz)), 0};
+}
 
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
                         const Eigen::Matrix3d& from_right, const SwingEnd& left_end,

@@ -74,6 +74,15 @@ Eigen::ArrayXd CycleWeights(double steps);
 /// The grid must hold late + floor(steps) + 2 points.
 Eigen::RowVector3d CycleMean(const SampleGrid& grid, int late, double steps);
 
+/// Where the parabola through three equally spaced values has its minimum, in steps from the
+/// middle.
+double ParabolaMinimum(double before, double middle, double after);
+
+/// Equations (3) and (4) as printed: the sum of W(t) one(t) . other(t - lag) over the rows of
+/// `one`, which are tp, for each lag from 0. Both end at T; `other` is longer by the largest lag.
+Eigen::ArrayXd PrintedCorrelation(const Eigen::Matrix<double, Eigen::Dynamic, 3>& one,
+                                  const Eigen::Matrix<double, Eigen::Dynamic, 3>& other);
+
 /// Phase by cross-correlation (section 6, eq. 4).
 ///
 /// | paper | here | unit |
@@ -101,6 +110,11 @@ PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double 
                         const Eigen::Matrix3d& from_right, const SwingEnd& left_end,
                         const SwingEnd& right_end, const PhaseConfig& config,
                         const CycleConfig& cycle);
+
+/// Equation (4) as printed: the lag of the peak of Rc within tp, which is one cycle. Sensors are
+/// compared in their own axes, and no correlation is given. Not found: there are no two common
+/// cycles yet.
+PhaseEstimate PhaseAsPrinted(const SampleGrid& left, const SampleGrid& right, double period_s);
 
 /// The phase that is published: jumps must persist, a loss is bridged for a while.
 struct Phase {

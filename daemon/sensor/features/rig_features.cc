@@ -98,13 +98,6 @@ Peak FirstPeak(const Seen& seen, int points, const std::array<double, kGridLengt
   return {};
 }
 
-/// Where the parabola through three equally spaced values has its minimum, in steps from the
-/// middle.
-double ParabolaMinimum(double before, double middle, double after) {
-  const double bend = before - 2 * middle + after;
-  return bend > 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
-}
-
 /// The minimum of the difference near `lag`, between grid points.
 double RefinedLag(const Seen& seen, int points, int lag, int overlap) {
   double here = Difference(seen, lag, overlap);
@@ -195,6 +188,31 @@ PeriodEstimate FindPeriod(const SampleGrid& grid, int points, double known_s,
     }
   }
   return Refined(seen, points, search, config);
+}
+
+PeriodEstimate PeriodAsPrinted(const SampleGrid& grid, const Config& config) {
+  const int overlap = static_cast<int>(std::lround(config.printed.overlap_s * kGridHz));
+  const int first = static_cast<int>(kGridHz / config.cadence.highest_hz);
+  const int last =
+      std::min(grid.size() - overlap, static_cast<int>(kGridHz / config.cadence.lowest_hz) + 1);
+  if (last < first + 2) return {};
+  const Eigen::ArrayXd curve =
+      PrintedCorrelation(grid.Filtered(overlap), grid.Filtered(last + overlap));
+  const auto is_peak = [&](int lag) {
+    return curve(lag) >= curve(lag - 1) && curve(lag) > curve(lag + 1);
+  };
+  const double lowest = curve.tail(last - first + 1).minCoeff();
+  double highest = lowest;
+  for (int lag = first + 1; lag < last; ++lag) {
+    if (is_peak(lag)) highest = std::max(highest, curve(lag));
+  }
+  const double least = lowest + config.printed.first_peak_share * (highest - lowest);
+  for (int lag = first + 1; lag < last; ++lag) {
+    if (!is_peak(lag) || curve(lag) < least) continue;
+    const double past = ParabolaMinimum(-curve(lag - 1), -curve(lag), -curve(lag + 1));
+    return {true, (lag + past) * kGridStepS, 0};
+  }
+  return {};
 }
 
 bool SpansSeveral(const Cadence& cadence, const Partner& partner, const CadenceConfig& config) {
@@ -376,6 +394,10 @@ void DeviceFeatureExtractor::Observe(std::int64_t now_ns, const Partner& partner
   moving_ = Next(moving_, grid_, known_s, config_.moving);
   estimate_ = {};
   if (!moving_.moving) return;
+  if (config_.printed.overlap_s > 0) {
+    estimate_ = PeriodAsPrinted(grid_, config_);
+    return;
+  }
   const auto points = static_cast<int>(
       std::min<std::int64_t>(grid_.size(), grid_.newest_index() - moving_.since_index + 1));
   const bool several = SpansSeveral(cadence_, partner, config_.cadence);
@@ -384,8 +406,13 @@ void DeviceFeatureExtractor::Observe(std::int64_t now_ns, const Partner& partner
 
 const stream::DeviceFeatures& DeviceFeatureExtractor::Compute(const Partner& partner) {
   if (elapsed_s_ == 0) return features_;
-  cadence_ =
-      moving_.moving ? Next(cadence_, estimate_, partner, elapsed_s_, config_.cadence) : Cadence{};
+  if (config_.printed.overlap_s > 0) {
+    cadence_ = {estimate_.found, estimate_.period_s, 0, 0, 0};
+  } else if (moving_.moving) {
+    cadence_ = Next(cadence_, estimate_, partner, elapsed_s_, config_.cadence);
+  } else {
+    cadence_ = {};
+  }
   features_.moving = moving_.moving;
   features_.frequency_valid = cadence_.valid;
   features_.frequency_hz = cadence_.valid ? 1 / cadence_.period_s : 0.0;
@@ -500,6 +527,14 @@ stream::PairFeatures RigFeatureExtractor::ComputePair(
     Pair& pair, const std::vector<stream::DeviceFeatures>& devices) {
   const auto& left = devices[pair.left];
   const auto& right = devices[pair.right];
+  if (config_.printed.overlap_s > 0) {
+    PhaseEstimate printed;
+    if (left.frequency_valid && right.frequency_valid) {
+      const double period_s = 0.5 * (1 / left.frequency_hz + 1 / right.frequency_hz);
+      printed = PhaseAsPrinted(devices_[pair.left].grid(), devices_[pair.right].grid(), period_s);
+    }
+    return {left.device, right.device, printed.found, printed.phase_rad, false};
+  }
   const std::int64_t index = std::min(devices_[pair.left].grid().newest_index(),
                                       devices_[pair.right].grid().newest_index());
   const std::int64_t steps = std::clamp<std::int64_t>(index - pair.computed_index, 0, kGridLength);

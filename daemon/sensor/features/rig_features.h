@@ -42,6 +42,10 @@ struct PeriodEstimate {
 PeriodEstimate FindPeriod(const SampleGrid& grid, int points, double known_s,
                           const CadenceConfig& config);
 
+/// Equation (3) as printed: the lag of the first high peak of Ra, and no correlation. Samples from
+/// before the motion count. Not found: Ra has no peak.
+PeriodEstimate PeriodAsPrinted(const SampleGrid& grid, const Config& config);
+
 /// The period that is published: jumps must persist, a loss is bridged for a while.
 struct Cadence {
   bool valid = false;

@@ -94,5 +94,25 @@ TEST_P(Recordings, ShakenStretchesMoveAndStillOrTiltedOnesDoNot) {
 INSTANTIATE_TEST_SUITE_P(WiimoteGrt, Recordings,
                          testing::Values("WiiAccShakeData.grt", "acc-orientation.grt"));
 
+TEST(Decisions, AreCountedForBothFeaturesByTheGaitThatWasMeant) {
+  const auto ours = MeasureDecisions(2, 3), printed = MeasureDecisions(2, 3, features::AsPrinted());
+  // Our features have settled 2.5 s after a change whatever the gaits were.
+  EXPECT_EQ(ours["settled"]["right_share"], 1);
+  EXPECT_LT(ours["all"]["right_share"], 1);
+  for (const auto& one : {ours, printed}) {
+    const auto& all = one["all"];
+    EXPECT_GT(one["settled"]["right_share"], 0.9);
+    EXPECT_NEAR(all["right_share"].get<double>() + all["wrong_share"].get<double>() +
+                    all["none_share"].get<double>(),
+                1, 1e-9);
+    int ticks = 0;  // 2 trials of 8 stretches of 4 s at 100 Hz.
+    for (const auto& meant : all["ticks_by_meant_and_found"]) {
+      for (const auto& found : meant) ticks += found.get<int>();
+    }
+    EXPECT_NEAR(ticks, 6400, 2);
+  }
+  EXPECT_NE(ours["all"], printed["all"]);
+}
+
 }  // namespace
 }  // namespace footing::eval

@@ -133,6 +133,95 @@ TEST(FindPeriod, FindsNoneInALine) {
   EXPECT_FALSE(FindPeriod(grid, grid.size(), 0, CadenceConfig{}).found);
 }
 
+TEST(PrintedCorrelation, WeighsNewerSamplesMore) {
+  Eigen::Matrix<double, 3, 3> one = Eigen::Matrix<double, 3, 3>::Zero();
+  one.col(1) << 1, 2, 4;
+  Eigen::Matrix<double, 5, 3> other = Eigen::Matrix<double, 5, 3>::Zero();
+  other.col(1) << 1, 0, 2, 3, 1;
+  other.col(2) << 9, 9, 9, 9, 9;
+  // W is 1/3, 2/3, 1. Lag 0: 1 * 2 / 3 + 2 * 3 * 2 / 3 + 4 * 1; lag 1: 0 + 2 * 2 * 2 / 3 + 4 * 3;
+  // lag 2: 1 * 1 / 3 + 0 + 4 * 2.
+  const Eigen::ArrayXd curve = PrintedCorrelation(one, other);
+  ASSERT_EQ(curve.size(), 3);
+  EXPECT_NEAR(curve(0), 26.0 / 3, 1e-12);
+  EXPECT_NEAR(curve(1), 44.0 / 3, 1e-12);
+  EXPECT_NEAR(curve(2), 25.0 / 3, 1e-12);
+}
+
+TEST(PeriodAsPrinted, IsTheLagOfTheFirstHighPeak) {
+  // A pulse each half second, every other one lower: Ra(0.5 s) / Ra(1 s) is 2 lower / (1 + lower²),
+  // which is 0.99 or 0.38, and peaks from 0.8 on count.
+  for (const auto& [lower, period_s] : {std::pair{0.9, 0.5}, std::pair{0.2, 1.0}}) {
+    SampleGrid grid{Config{}};
+    for (int i = 0; i < 400; ++i) {
+      Add(grid, 0.01 * i, {0, i % 100 == 0 ? 1.0 : i % 100 == 50 ? lower : 0.0, 0});
+    }
+    const PeriodEstimate estimate = PeriodAsPrinted(grid, AsPrinted());
+    ASSERT_TRUE(estimate.found);
+    EXPECT_NEAR(estimate.period_s, period_s, 1e-9);
+  }
+}
+
+TEST(PeriodAsPrinted, MovesWithTheMeanWhereOursDoesNot) {
+  SampleGrid grid{Config{}};
+  for (int i = 0; i < 400; ++i) {
+    Add(grid, 0.01 * i, {0, 0, 4 * std::sin(2 * kPi * 0.01 * i / 0.8) - kStandardGravityMps2});
+  }
+  const PeriodEstimate printed = PeriodAsPrinted(grid, AsPrinted());
+  ASSERT_TRUE(printed.found);
+  EXPECT_NEAR(printed.period_s, 0.8, 0.08);
+  EXPECT_GT(std::abs(printed.period_s - 0.8), 0.003);
+  EXPECT_NEAR(FindPeriod(grid, grid.size(), 0, CadenceConfig{}).period_s, 0.8, kGridStepS / 20);
+}
+
+TEST(PhaseAsPrinted, IsTheLagOfThePeakWithinOneCycle) {
+  // Pulses each half second, the right hand's 20 points before the left one's: aR(t - 0.2 s) is
+  // aL(t), so the right one leads by 2 pi 20 / 50.
+  SampleGrid left{Config{}}, right{Config{}};
+  for (int i = 0; i < 150; ++i) {
+    Add(left, 0.01 * i, {0, i % 50 == 40 ? 1.0 : 0.0, 3});
+    Add(right, 0.01 * i, {0, i % 50 == 20 ? 1.0 : 0.0, -5});
+  }
+  const PhaseEstimate estimate = PhaseAsPrinted(left, right, 0.5);
+  ASSERT_TRUE(estimate.found);
+  EXPECT_NEAR(estimate.phase_rad, 0.8 * kPi, 1e-4);
+  EXPECT_NEAR(PhaseAsPrinted(right, left, 0.5).phase_rad, -0.8 * kPi, 1e-4);
+  // Two cycles of 0.8 s are more than there is.
+  EXPECT_FALSE(PhaseAsPrinted(left, right, 0.8).found);
+}
+
+TEST(FeaturesAsPrinted, AreTheNewestEstimatesOfRawSamples) {
+  EXPECT_FALSE(Named("papers"));
+  const wrists::HandMotion motion(
+      {{.duration_s = 5, .frequency_hz = 1.5, .phase_rad = kPi, .amplitude_mps2 = 40},
+       {.duration_s = 2}},
+      {.direction_S = {1, 0, 0}}, 0, 0);
+  const std::vector<Member> members = {{kLeft, stream::DeviceRole::kLeftHand},
+                                       {kRight, stream::DeviceRole::kRightHand}};
+  RigFeatureExtractor ours("a", members, *Named("best")), printed("a", members, *Named("paper"));
+  stream::RigFeatures swinging, best_swinging, stopped, best_stopped;
+  for (const auto& sample : Samples(motion, {})) {
+    ours.AddSample(sample);
+    printed.AddSample(sample);
+    if (sample.device != kRight) continue;
+    const double t_s = NanosecondsToSeconds(sample.sampled_ns - kNanosecondsPerSecond);
+    (t_s < 5 ? swinging : stopped) = printed.Compute(sample.sampled_ns);
+    (t_s < 5 ? best_swinging : best_stopped) = ours.Compute(sample.sampled_ns);
+  }
+  const stream::DeviceFeatures& hand = swinging.devices[0];
+  EXPECT_NEAR(hand.frequency_hz, 1.5, 0.1);
+  ASSERT_TRUE(swinging.pairs[0].phase_valid);
+  EXPECT_GT(std::abs(swinging.pairs[0].phase_rad), kPi - DegreesToRadians(20));
+  // Clipped samples are filled in by ours; the raw ones end at 3 g.
+  EXPECT_NEAR(best_swinging.devices[0].amplitude_mps2, 40, 2);
+  EXPECT_NEAR(hand.amplitude_mps2, 3 * kStandardGravityMps2, 0.5);
+  EXPECT_FALSE(hand.held);
+  EXPECT_FALSE(stopped.devices[0].moving);
+  EXPECT_FALSE(stopped.devices[0].frequency_valid);
+  EXPECT_FALSE(stopped.pairs[0].phase_valid);
+  EXPECT_FALSE(best_stopped.devices[0].moving);
+}
+
 TEST(Cadence, AJumpMustPersistForAQuarterOfTheOldPeriod) {
   const CadenceConfig config;
   Cadence cadence = Next({}, {true, 1.0, 1}, {}, 0.01, config);
