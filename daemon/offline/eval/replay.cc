@@ -1,5 +1,6 @@
 #include "daemon/offline/eval/replay.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,17 +13,26 @@
 namespace footing::eval {
 namespace {
 
+/// Config of the recorded footingd, as far as its features depend on it.
+sensor::Config ConfigOf(const std::vector<v1::Tick>& ticks) {
+  sensor::Config config;
+  const auto configured = std::find_if(ticks.begin(), ticks.end(),
+                                       [](const v1::Tick& tick) { return tick.has_config(); });
+  if (configured != ticks.end()) config.features = sensor::FeaturesIn(configured->config().json());
+  return config;
+}
+
 /// A Hub whose clock follows the recording: what was read or written next says what time it was.
 class HubReplay {
  public:
   explicit HubReplay(const std::vector<v1::Tick>& ticks)
-      : hub_(sensor::Config{}, {[](devices::DeviceHandle, const reports::OutputReport&) {},
-                                [](const sensor::LogLine&) {},
-                                [this] { return NowNs(); },
-                                [](devices::DeviceHandle, std::uint8_t, std::size_t) {},
-                                [this](const std::string& serial) { return StoredOf(serial); },
-                                {},
-                                {}}) {
+      : hub_(ConfigOf(ticks), {[](devices::DeviceHandle, const reports::OutputReport&) {},
+                               [](const sensor::LogLine&) {},
+                               [this] { return NowNs(); },
+                               [](devices::DeviceHandle, std::uint8_t, std::size_t) {},
+                               [this](const std::string& serial) { return StoredOf(serial); },
+                               {},
+                               {}}) {
     for (const v1::Tick& tick : ticks) {
       for (const v1::DeviceStatus& status : tick.status().devices()) {
         statuses_.emplace(status.device(), status);

@@ -7,6 +7,8 @@
 
 #include <sys/socket.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/net/address.h"
 #include "common/net/device_link.h"
 #include "common/net/metrics_endpoint.h"
@@ -15,7 +17,9 @@
 #include "common/runtime/log.h"
 #include "common/runtime/service_manager.h"
 #include "common/wire/wire.h"
+#include "daemon/sensor/features/config.h"
 #include "daemon/sensor/service/device.h"
+#include "footing/v1/character.pb.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::sensor {
@@ -44,6 +48,9 @@ void Config::Bind(config::Binder& binder) {
                    return binding ? std::string() : binding.error().message;
                  });
   binder.Text("default_rig", default_rig, "Rig of unassigned devices");
+  binder.Text("features", features,
+              "Method of the features: best, or paper for equations 3 and 4 as the gait paper "
+              "prints them");
   binder.Number("tick_rate_hz", tick_rate_hz, 10, 200, "Tick rate, Hz");
   binder.Number("stale_after_s", stale_after_s, 0.1, 10,
                 "Time without data after which a device is stale, s");
@@ -130,6 +137,9 @@ Result<void> Check(const Config& config) {
   if (const auto rig = CheckRig(config.default_rig); !rig) {
     return UsageError("config: default_rig: " + rig.error().message);
   }
+  if (!features::Named(config.features)) {
+    return UsageError("unknown --features " + config.features + "; there are: best, paper");
+  }
   if (const auto access = config.access.Check(); !access) return access;
   if (!config.metrics.empty()) {
     if (auto checked = monitoring::MetricsEndpoint::Check(config.metrics); !checked) return checked;
@@ -181,6 +191,9 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.server_id = "footingd";
   options.version = version;
   options.channels = Channels();
+  if (!EffectiveConfig(config).empty()) {
+    options.channels.push_back({"config", v1::Tick::kConfigFieldNumber, true});
+  }
   options.channels.push_back(monitoring::StatsChannel());
   options.tick_rate_hz = config.tick_rate_hz;
   options.sessions = config.sessions;
@@ -189,6 +202,19 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
                           "layout",   "hands",  "contacts", "lease"};
   if (!SessionSources(config).empty()) options.capabilities.push_back("devices");
   return options;
+}
+
+std::string EffectiveConfig(const Config& config) {
+  if (config.features == Config().features) return "";
+  return nlohmann::json{{"program", "footingd"}, {"settings", {{"features", config.features}}}}
+      .dump();
+}
+
+std::string FeaturesIn(const std::string& effective_config) {
+  const auto json = nlohmann::json::parse(effective_config, nullptr, false);
+  const auto features = nlohmann::json::json_pointer("/settings/features");
+  if (!json.contains(features) || !json[features].is_string()) return Config().features;
+  return json[features].get<std::string>();
 }
 
 namespace {
@@ -253,6 +279,11 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
   AppendList(channels, Tick::kContactsFieldNumber, content.contacts,
              &v1::ContactSamples::add_samples);
   AppendList(channels, Tick::kRawFieldNumber, content.raw, &v1::RawReports::add_reports);
+  if (!content.config.empty()) {
+    v1::EffectiveConfig config;
+    config.set_json(content.config);
+    Append(channels, Tick::kConfigFieldNumber, config);
+  }
   return channels;
 }
 
@@ -263,11 +294,15 @@ cli::ServerProgram Program() {
           "  footingd\n"
           "  footingd --source stream:unix:/tmp/devices.sock\n"
           "  footingd --source hid --source stream:tls:192.168.1.5:7432 --set token_file=token\n"
+          "  footingd --features paper\n"
           "  footingd --set 'roles={\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}'\n",
           {{"--source", "sources",
             "Source of devices: hid, or stream:ADDRESS for simulated devices (of other hosts: "
             "stream:tls:HOST:PORT); may be repeated",
             Kind::kList},
+           {"--features", "features",
+            "Method of the features: best, or paper for equations 3 and 4 of the gait paper as "
+            "printed (default: best)"},
            {"--metrics", "metrics",
             "Address of the metrics for Prometheus, tcp:127.0.0.1:PORT or unix:PATH"},
            {"--insecure-lan", "insecure_lan",

@@ -30,6 +30,7 @@ struct Config {
   /// Serial to "rig/role"; overrides what a simulated device requests.
   std::map<std::string, std::string> roles;
   std::string default_rig = "main";
+  std::string features = "best";  ///< Method of features::Named: best or paper.
   double tick_rate_hz = 100;
   double stale_after_s = 0.5;  ///< A live device without data for this time is stale.
   board::PlateConfig plate;
@@ -86,7 +87,15 @@ Result<void> CheckStart(const Config& config);
 transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
                                            const transport::ServerOptions& with_access);
 
-/// The channels that footingd publishes; a channel is one field of v1::Tick.
+/// Settings by which a recording is replayed, JSON: the method of the features. Empty if that is
+/// the default.
+std::string EffectiveConfig(const Config& config);
+
+/// The features that an EffectiveConfig of a recording names; "best" where it names none.
+std::string FeaturesIn(const std::string& effective_config);
+
+/// The channels that footingd publishes; a channel is one field of v1::Tick. `config` comes only
+/// with an EffectiveConfig.
 std::vector<transport::Channel> Channels();
 
 /// Each channel that has something to say, serialised once for all sessions.

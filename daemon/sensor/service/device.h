@@ -123,6 +123,7 @@ struct TickContent {
   std::vector<stream::DeviceStatus> status;
   bool has_setup = false;
   std::vector<stream::RigSetup> setup;
+  std::string config;  ///< EffectiveConfig; empty: the one before holds.
 };
 
 /// Bounds a tick against a device that floods; a tick of eight devices has some ten of each.

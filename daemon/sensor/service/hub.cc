@@ -17,7 +17,10 @@ Hub::Hub(const Config& config, Ports ports)
       ports_(std::move(ports)),
       setup_(config_, devices_, ports_.storage, ports_.log, ports_.now_ns),
       roles_(config_.roles, setup_.roles(), ports_.log),
-      trackers_(config_, ports_.log, ports_.now_ns) {}
+      rigs_(features::Named(config_.features).value_or(features::Config())),
+      trackers_(config_, ports_.log, ports_.now_ns) {
+  content_.config = EffectiveConfig(config_);
+}
 
 template <typename HasEnded>
 void Hub::EndLeases(const HasEnded& has_ended) {

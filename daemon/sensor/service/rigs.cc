@@ -183,14 +183,14 @@ void RigTable::Rebuild(const DeviceTable& devices) {
         [](const auto& a, const auto& b) { return a.device == b.device && a.role == b.role; });
     if (same) continue;
     rig.members = wanted;
-    rig.extractor = std::make_unique<features::RigFeatureExtractor>(name, wanted);
+    rig.extractor = std::make_unique<features::RigFeatureExtractor>(name, wanted, config_);
   }
 }
 
 void RigTable::Restart(const std::string& rig) {
   if (const auto found = rigs_.find(rig); found != rigs_.end()) {
     found->second.extractor =
-        std::make_unique<features::RigFeatureExtractor>(rig, found->second.members);
+        std::make_unique<features::RigFeatureExtractor>(rig, found->second.members, config_);
   }
 }
 

@@ -73,6 +73,7 @@ class RoleAssignment {
 /// The features of every rig, from the samples of its devices on the body.
 class RigTable {
  public:
+  explicit RigTable(const features::Config& config) : config_(config) {}
   /// Rigs whose members stayed as they are keep their features. A lost device stays a member of its
   /// rig until its role goes to another.
   void Rebuild(const DeviceTable& devices);
@@ -90,6 +91,7 @@ class RigTable {
     std::int64_t decoded_ns = 0;
   };
 
+  features::Config config_;
   std::map<std::string, Rig> rigs_;
 };
 

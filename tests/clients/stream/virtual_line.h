@@ -8,6 +8,7 @@
 
 #include "clients/stream/plan.h"
 #include "common/base/units.h"
+#include "common/recording/recorded_session.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/hub.h"
 
@@ -20,9 +21,9 @@ inline constexpr std::int64_t kAnswerNs = 4'000'000;  // From a request to its a
 /// footingd's hub and the devices that talk to it, in time that only they advance.
 class VirtualLine {
  public:
-  explicit VirtualLine(std::vector<SimulatedDevice> devices)
+  explicit VirtualLine(std::vector<SimulatedDevice> devices, const sensor::Config& config = {})
       : devices_(std::move(devices)),
-        hub_(sensor::Config{},
+        hub_(config,
              {[this](devices::DeviceHandle device, const reports::OutputReport& report) {
                 const double time_s = NanosecondsToSeconds(now_ns_ - kStartNs);
                 for (auto& answer : devices_[device - 1].HandleOutput(time_s, report)) {

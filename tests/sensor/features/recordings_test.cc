@@ -1,14 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "common/base/units.h"
 #include "daemon/offline/analysis/features_chain.h"
 #include "daemon/offline/eval/features.h"
+#include "daemon/offline/eval/replay.h"
+#include "tests/clients/stream/virtual_line.h"
 
 /// Real recordings: shaken stretches move, still and slowly tilted ones do not.
 namespace footing::eval {
@@ -93,6 +97,29 @@ TEST_P(Recordings, ShakenStretchesMoveAndStillOrTiltedOnesDoNot) {
 
 INSTANTIATE_TEST_SUITE_P(WiimoteGrt, Recordings,
                          testing::Values("WiiAccShakeData.grt", "acc-orientation.grt"));
+
+TEST(RecordedFeatures, AreReplayedByTheMethodThatMadeThem) {
+  sensor::Config paper;
+  paper.features = "paper";
+  std::vector<stream_client::SimulatedDevice> devices;
+  devices.emplace_back(
+      virtual_devices::Wiimote(4),
+      [](double t_s) {
+        virtual_devices::WiimoteSensors felt;
+        felt.specific_force_S_mps2.x() = 8 * std::sin(2 * kPi * 1.5 * t_s);
+        return felt;
+      },
+      stream::DeviceRole::kLeftHand,
+      virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kGood, 2));
+  auto ticks = stream_client::VirtualLine(std::move(devices), paper).Run(4);
+  const FeaturesReplay same = ReplayFeatures(ticks);
+  EXPECT_GT(same.compared, 300u);
+  EXPECT_EQ(same.equal, same.compared);
+  for (v1::Tick& tick : ticks) tick.clear_config();
+  const FeaturesReplay ours = ReplayFeatures(ticks);
+  EXPECT_EQ(ours.compared, same.compared);
+  EXPECT_LT(ours.equal, ours.compared);
+}
 
 TEST(Decisions, AreCountedForBothFeaturesByTheGaitThatWasMeant) {
   const auto ours = MeasureDecisions(2, 3), printed = MeasureDecisions(2, 3, features::AsPrinted());

@@ -128,6 +128,15 @@ TEST(CommandLine, AnOptionOfItsOwnGoesBeforeTheFileAndSet) {
   EXPECT_THAT(Parse({"--listen", "unix:/tmp/\xff"}).errors, HasSubstr("not text in UTF-8"));
 }
 
+TEST(CommandLine, FeaturesAreBestOrPaper) {
+  EXPECT_EQ(Parse({}).config->features, "best");
+  EXPECT_EQ(Parse({"--features", "paper"}).config->features, "paper");
+  EXPECT_EQ(Parse({"--set", "features=paper"}).config->features, "paper");
+  const Parsed unknown = Parse({"--features", "papers"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("unknown --features papers; there are: best, paper"));
+}
+
 TEST(CommandLine, ReadAgainAnErrorIsReturnedAndNothingIsPrinted) {
   const test::TemporaryFolder folder;
   cli::ServerLine line;

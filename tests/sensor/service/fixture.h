@@ -113,6 +113,7 @@ class Bench {
   }
   void Append(TickContent tick) {
     const auto add = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    if (!tick.config.empty()) content.config = tick.config;
     add(content.motion, tick.motion);
     add(content.boards, tick.boards);
     add(content.raw, tick.raw);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/units.h"
@@ -80,6 +81,40 @@ TEST(Hub, SwingingHandsHaveFrequencyPhaseAndAmplitude) {
   EXPECT_EQ(rig.newest_received_ns, bench.now_ns());
   EXPECT_GE(rig.decoded_ns, rig.newest_received_ns);
   EXPECT_GE(rig.computed_ns, rig.decoded_ns);
+}
+
+TEST(Hub, FeaturesAsPrintedAreThoseOfTheSettingAndSaidInTheConfig) {
+  Config paper;
+  paper.features = "paper";
+  Bench ours, printed(paper);
+  for (Bench* bench : {&ours, &printed}) {
+    bench->Attach(Wiimote(1));
+    bench->Attach(Wiimote(2));
+    // Along gravity the printed correlation moves with the mean, ours does not.
+    bench->force = [](double t_s) {
+      return Eigen::Vector3d(0, 0, 6 * std::sin(2 * kPi * 1.1 * t_s) - kStandardGravityMps2);
+    };
+    bench->Advance(5);
+    ASSERT_EQ(bench->content.features.size(), 1u);
+    ASSERT_TRUE(bench->content.features[0].devices[0].frequency_valid);
+  }
+  EXPECT_NEAR(ours.content.features[0].devices[0].frequency_hz, 1.1, 0.005);
+  const double printed_hz = printed.content.features[0].devices[0].frequency_hz;
+  EXPECT_NEAR(printed_hz, 1.1, 0.3);
+  EXPECT_GT(std::abs(printed_hz - 1.1), 0.05);
+
+  EXPECT_EQ(ours.content.config, "");
+  EXPECT_EQ(FeaturesIn(printed.content.config), "paper");
+  for (const char* torn : {"", "{", "7", R"({"settings":{"features":7}})"}) {
+    EXPECT_EQ(FeaturesIn(torn), "best");
+  }
+  const auto has_config = [](const Config& config) {
+    const auto channels = MakeServerOptions(config, "1", {}).channels;
+    return std::any_of(channels.begin(), channels.end(),
+                       [](const auto& channel) { return channel.name == "config"; });
+  };
+  EXPECT_FALSE(has_config({}));
+  EXPECT_TRUE(has_config(paper));
 }
 
 TEST(Hub, ABoardReadsItsCornersAndTheCentreOfPressure) {
