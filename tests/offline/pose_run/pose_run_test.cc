@@ -287,7 +287,7 @@ TEST(PoseRun, AWiimoteTellsReadingsAndNoPlaces) {
   model.weights.setZero(arms::kDirections, arms::ArmFeatures::kCount);
   model.offset << 0, 1, 0, 0, 0, 1, 0, 1, 0;
   model.covariance.setIdentity();
-  EstimateArms(model, run);
+  EstimateArms(arms::ArmTracker(model), run);
   EXPECT_FALSE(run.frames[300].inputs.arms[0].valid);
   EXPECT_TRUE(run.frames[340].inputs.arms[0].valid);
   EXPECT_LT((run.frames[340].inputs.arms[1].directions.upper + Eigen::Vector3d::UnitY()).norm(),
@@ -301,7 +301,7 @@ double WorstOfStraps(bool perfect) {
   settings.perfect_devices = perfect;
   PoseRun run = RunOf(settings);
   EXPECT_TRUE(run.frames[0].readings[0][0].empty()) << "no fist";
-  EstimateArms(std::nullopt, run);
+  EstimateArms(arms::ArmTracker(std::nullopt), run);
   body::Kinematics at(run.body.skeleton);
   double worst = 0;
   for (std::size_t i = 345; i < run.frames.size(); ++i) {
