@@ -366,12 +366,34 @@ struct SetUpArguments {
   std::vector<std::string> only;
   std::vector<std::string> body_roles;
   double mass_kg = 0;
+  std::string calibration = "marks";
+  double height_m = 0;
   bool yes = false;
   bool script = false;
 };
 
 constexpr double kScriptSettleS = 2;
 constexpr double kEffectsSeenS = 1.2;
+
+Result<void> TakePoses(SetUpArguments& arguments, const frames::CameraFile& camera) {
+  if (arguments.calibration != "poses") {
+    if (arguments.height_m <= 0) return {};
+    return UsageError(
+        "--height-m is for --calibration poses; the marks of the boards do not need it");
+  }
+  if (arguments.height_m <= 0)
+    return UsageError("--calibration poses needs --height-m, the height of who holds the poses");
+  for (const auto role : {stream::DeviceRole::kLeftHand, stream::DeviceRole::kRightHand}) {
+    const bool has = std::any_of(camera.spheres.begin(), camera.spheres.end(),
+                                 [&](const auto& sphere) { return sphere.role == role; });
+    if (!has)
+      return UsageError("--calibration poses needs the spheres of both hands, and " +
+                        arguments.options.camera_file + " has none of the " +
+                        std::string(stream::Name(role)) + "; use --calibration marks");
+  }
+  arguments.options.poses_height_m = arguments.height_m;
+  return {};
+}
 
 /// The camera's sphere that is held on the marks: the first of its file.
 Result<void> TakeCamera(SetUpArguments& arguments, const std::vector<guide::Item>& items) {
@@ -384,7 +406,7 @@ Result<void> TakeCamera(SetUpArguments& arguments, const std::vector<guide::Item
   if (!camera) return camera.error();
   arguments.options.camera_role = camera->spheres.front().role;
   arguments.options.camera_radius_m = camera->spheres.front().target.radius_m;
-  return {};
+  return TakePoses(arguments, *camera);
 }
 
 /// The items that the arguments name; UsageError when they contradict each other.
@@ -446,6 +468,25 @@ Result<void> Setup(Connection& session, const SetUpArguments& arguments,
   return AllDone(items, *results, arguments.options.rig);
 }
 
+void AddCameraOptions(CLI::App& command, SetUpArguments& arguments) {
+  command.add_option("--camera", arguments.options.camera_file,
+                     "Camera file of the running footing-camera, whose pose is calibrated");
+  command
+      .add_option("--calibration", arguments.calibration,
+                  "With --camera: marks (a sphere on each mark of the boards, default) or poses "
+                  "(three poses of a person with a sphere in each hand)")
+      ->check(CLI::IsMember({"marks", "poses"}));
+  command
+      .add_option("--height-m", arguments.height_m,
+                  "With --calibration poses: height of the person, m")
+      ->check(CLI::Range(1.0, 2.3));
+  command
+      .add_option("--fist-to-sphere-m", arguments.options.fist_to_sphere_m,
+                  "With --calibration poses: from the middle of the fist to the sphere, m (default "
+                  "0.11, a PS Move; 0 for simulated hands)")
+      ->check(CLI::Range(0.0, 0.3));
+}
+
 }  // namespace
 
 void AddSetupCommand(CLI::App& app, Shared& shared) {
@@ -482,8 +523,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(1.0, 3600.0));
   command->add_option("--tries", arguments->options.tries, "Attempts for each item (default 2)")
       ->check(CLI::Range(1, 10));
-  command->add_option("--camera", arguments->options.camera_file,
-                      "Camera file of the running footing-camera, whose pose is calibrated");
+  AddCameraOptions(*command, *arguments);
   command->add_flag("--yes", arguments->yes,
                     "Do not wait for Enter at steps that no sensor can confirm");
   command->add_flag(
@@ -495,6 +535,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       "Examples:\n  footing-ctl setup --worn left_leg,right_leg\n"
       "  footing-ctl setup --only layout --only tare      # two items alone\n"
       "  footing-ctl setup --only camera --camera camera.json   # while footing-camera runs\n"
+      "  footing-ctl setup --only camera --camera camera.json --calibration poses --height-m 1.74\n"
       "  footing-ctl setup --mass-kg 70 --json");
   command->callback([arguments, &shared] {
     const auto items = Validate(*arguments);

@@ -17,15 +17,13 @@
 namespace footing::camera_pose {
 namespace {
 
-/// A hand that holds a sphere against a board trembles by less than this, per axis.
-constexpr double kTrembleM = 0.001;
 /// Scatter over what noise and trembling explain, as a ratio of variances. The greatest of three
 /// directions of 30 frames of noise stays below it (chi-squared, one in 10^4).
 constexpr double kMostScatter = 2.5;
 
 }  // namespace
 
-Result<SeenPoint> MeanAtRest(const std::vector<SeenPoint>& frames) {
+Result<SeenPoint> MeanAtRest(const std::vector<SeenPoint>& frames, double tremble_m) {
   if (frames.size() < kLeastFrames)
     return InvalidData("the sphere was seen in " + std::to_string(frames.size()) + " frames, " +
                        std::to_string(kLeastFrames) +
@@ -42,11 +40,11 @@ Result<SeenPoint> MeanAtRest(const std::vector<SeenPoint>& frames) {
     scatter += off * off.transpose() / (count - 1);
   }
   const Eigen::Matrix3d expected =
-      mean.covariance_m2 + kTrembleM * kTrembleM * Eigen::Matrix3d::Identity();
+      mean.covariance_m2 + tremble_m * tremble_m * Eigen::Matrix3d::Identity();
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> ratio(scatter, expected);
   if (!(ratio.eigenvalues().maxCoeff() <= kMostScatter))
     return InvalidData("the sphere moved by " + text::Fixed(1e3 * std::sqrt(scatter.trace()), 1) +
-                       " mm while it was measured: hold it on the mark and keep still");
+                       " mm while it was measured: keep still");
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> common(mean.covariance_m2 - scatter);
   const Eigen::Matrix3d axes = common.eigenvectors();
   mean.covariance_m2 =
@@ -62,6 +60,7 @@ constexpr double kMostScaleOff = 0.02;
 /// (footing-eval calibration), and beyond this once in some 700 calibrations.
 constexpr double kMostTiltRad = DegreesToRadians(4);
 constexpr double kMostTurnSdRad = DegreesToRadians(1);
+constexpr double kMostTurnSdInPosesRad = DegreesToRadians(4);
 /// Largest ratio of a mark's residual to its standard deviation; noise reaches it once in some
 /// thousand marks.
 constexpr double kMostDeviations = 4;
@@ -105,6 +104,20 @@ std::optional<Error> Mirrored(const Observations& observations, const CameraPose
       "that is asked for");
 }
 
+/// The hands do not lie in one plane, so their mirror image fits only when sides were exchanged.
+std::optional<Error> Exchanged(const Observations& observations, const CameraPose& pose) {
+  Observations exchanged = observations;
+  for (SeenMark& mark : exchanged.marks) {
+    mark.p_W_m.y() *= -1;
+    mark.per_sd.row(1) *= -1;
+  }
+  if (!(Fit(exchanged).misfit < pose.misfit)) return {};
+  return InvalidData(
+      "the hands are seen as in a mirror: the image is mirrored, or each controller is in the "
+      "other "
+      "hand. Switch mirroring off in the camera, and take each controller into its own hand");
+}
+
 Observations Without(std::size_t mark, Observations observations) {
   observations.marks.erase(observations.marks.begin() + static_cast<std::ptrdiff_t>(mark));
   return observations;
@@ -126,6 +139,11 @@ std::optional<std::size_t> WorstMark(const Observations& observations) {
 }
 
 Error MisplacedMark(const Observations& observations, const CameraPose& pose, std::size_t mark) {
+  if (observations.in_poses)
+    return InvalidData("the " + observations.marks[mark].name + ", is " +
+                       Mm(pose.residuals_m[mark]) +
+                       " from where the other poses put it: hold the three poses again, with "
+                       "straight arms; if it stays, the height is not the person's");
   return InvalidData("the mark " + observations.marks[mark].name + " is " +
                      Mm(pose.residuals_m[mark]) +
                      " from where the others put it: measure it again, with the sphere right on "
@@ -139,6 +157,13 @@ std::optional<Error> WrongLength(const Observations& observations, const CameraP
   const auto worst = WorstMark(observations);
   if (worst && std::abs(Fit(Without(*worst, observations)).scale - 1) < off / 2)
     return MisplacedMark(observations, pose, *worst);
+  if (observations.in_poses)
+    return InvalidData(
+        "the camera sees the poses " + text::Fixed(100 * std::abs(1 / pose.scale - 1), 0) +
+        " % too " + (pose.scale < 1 ? "large" : "small") +
+        ", so distances are wrong, too: the focal length, the sphere's radius or the "
+        "person's height is not the true one. Check the height, then calibrate the "
+        "lens");
   const std::string times = text::Fixed(pose.scale, 3);
   return InvalidData("the camera sees the marks " +
                      text::Fixed(100 * std::abs(1 / pose.scale - 1), 1) + " % " +
@@ -156,7 +181,8 @@ std::optional<Error> WrongPlace(const Observations& observations, const CameraPo
     const Eigen::Matrix3d covariance =
         turn * mark.seen.covariance_m2 * turn.transpose() +
         std::pow(observations.placement_sd_m, 2) * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d error = mark.p_W_m - pose.X_WC * mark.seen.p_C_m;
+    const Eigen::Vector3d error =
+        mark.p_W_m + mark.per_sd * pose.body - pose.X_WC * mark.seen.p_C_m;
     if (error.dot(covariance.ldlt().solve(error)) <= kMostDeviations * kMostDeviations) continue;
     const auto worst = WorstMark(observations);
     if (!worst)
@@ -176,8 +202,12 @@ std::optional<Error> WrongGravity(const Observations& observations, const Camera
                      "did not stand upright on its mark. Level the boards, or measure again");
 }
 
-std::optional<Error> Uncertain(const CameraPose& pose) {
-  if (pose.TurnSdRad() <= kMostTurnSdRad) return {};
+std::optional<Error> Uncertain(const Observations& observations, const CameraPose& pose) {
+  const double most_rad = observations.in_poses ? kMostTurnSdInPosesRad : kMostTurnSdRad;
+  if (pose.TurnSdRad() <= most_rad) return {};
+  if (observations.in_poses)
+    return InvalidData("the camera's direction stays uncertain by " + Degrees(pose.TurnSdRad()) +
+                       ": move the camera nearer, and hold the poses again");
   return InvalidData("the camera's direction stays uncertain by " + Degrees(pose.TurnSdRad()) +
                      ": add marks, farther apart, or move the camera nearer");
 }
@@ -188,12 +218,15 @@ Result<CameraPose> Calibrate(const Observations& observations) {
   if (auto refusal = WrongMarks(observations)) return *std::move(refusal);
   Observations marks_only = observations;
   marks_only.plumbs.clear();
-  if (auto refusal = Mirrored(observations, Fit(marks_only))) return *std::move(refusal);
+  const CameraPose by_marks = Fit(marks_only);
+  if (auto refusal = observations.in_poses ? Exchanged(observations, by_marks)
+                                           : Mirrored(observations, by_marks))
+    return *std::move(refusal);
   CameraPose pose = Fit(observations);
   if (auto refusal = WrongLength(observations, pose)) return *std::move(refusal);
   if (auto refusal = WrongPlace(observations, pose)) return *std::move(refusal);
   if (auto refusal = WrongGravity(observations, pose)) return *std::move(refusal);
-  if (auto refusal = Uncertain(pose)) return *std::move(refusal);
+  if (auto refusal = Uncertain(observations, pose)) return *std::move(refusal);
   return pose;
 }
 
@@ -201,9 +234,9 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-/// Turn, shift, the common error of depth, scale about the camera.
-constexpr int kUnknowns = 8;
-constexpr int kCommon = 6, kScale = 7;
+/// Turn, shift, the common error of depth, the person's measures, scale about the camera.
+constexpr int kCommon = 6, kBody = 7, kScale = kBody + kBodyMeasures;
+constexpr int kUnknowns = kScale + 1;
 using Column = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using Rows = Eigen::Matrix<double, 3, kUnknowns>;
@@ -225,6 +258,7 @@ Eigen::Isometry3d Start(const std::vector<SeenMark>& marks) {
 struct Solution {
   Eigen::Isometry3d X_WC;
   double common = 0;  ///< Error of depth that all points share, in standard deviations.
+  Eigen::Matrix<double, kBodyMeasures, 1> body = Eigen::Matrix<double, kBodyMeasures, 1>::Zero();
   double scale = 1;
   Normal covariance;
   double misfit = 0;
@@ -275,10 +309,10 @@ void AddMark(const SeenMark& mark, const Solution& at, double placement_sd_m, Su
   const Vector3d arm = at.scale * (turn * mark.seen.p_C_m);
   const Vector3d place = arm + at.X_WC.translation() - at.common * common_sd;
   Rows jacobian;
-  jacobian << -CrossMatrix(place), Matrix3d::Identity(), -common_sd, arm / at.scale;
+  jacobian << -CrossMatrix(place), Matrix3d::Identity(), -common_sd, -mark.per_sd, arm / at.scale;
   const Matrix3d covariance = turn * OwnCovariance(mark.seen) * turn.transpose() +
                               placement_sd_m * placement_sd_m * Matrix3d::Identity();
-  sums.Add(jacobian, mark.p_W_m - place, covariance, 3);
+  sums.Add(jacobian, mark.p_W_m + mark.per_sd * at.body - place, covariance, 3);
 }
 
 /// The line from low to high has no level part; how long it is nobody knows.
@@ -288,7 +322,8 @@ void AddPlumb(const SeenPlumb& plumb, const Solution& at, double placement_sd_m,
   const Vector3d line =
       at.scale * (turn * (plumb.high.p_C_m - plumb.low.p_C_m)) - at.common * common_sd;
   Rows jacobian;
-  jacobian << -CrossMatrix(line), Matrix3d::Zero(), -common_sd, Vector3d::Zero();
+  jacobian << -CrossMatrix(line), Matrix3d::Zero(), -common_sd, PerMeasure::Zero(),
+      Vector3d::Zero();
   const double leaning_m = line.norm() * std::sin(plumb.tilt_rad);
   Matrix3d covariance =
       turn * (OwnCovariance(plumb.low) + OwnCovariance(plumb.high)) * turn.transpose();
@@ -309,6 +344,7 @@ Solution Solve(const Observations& observations, bool with_scale) {
     for (const SeenPlumb& plumb : observations.plumbs)
       AddPlumb(plumb, solution, observations.placement_sd_m, sums);
     sums.AddPrior(kCommon, -solution.common);
+    for (int k = 0; k < kBodyMeasures; ++k) sums.AddPrior(kBody + k, -solution.body[k]);
     const Eigen::MatrixXd inverse = sums.normal.topLeftCorner(unknowns, unknowns)
                                         .ldlt()
                                         .solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
@@ -324,6 +360,7 @@ Solution Solve(const Observations& observations, bool with_scale) {
     change.translation() = step.segment<3>(3);
     solution.X_WC = change * solution.X_WC;
     solution.common += step[kCommon];
+    solution.body += step.segment<kBodyMeasures>(kBody);
     if (with_scale) solution.scale += step[kScale];
   }
   return solution;
@@ -346,11 +383,13 @@ CameraPose Fit(const Observations& observations) {
   pose.X_WC = rigid.X_WC;
   pose.covariance = rigid.covariance.topLeftCorner<6, 6>();
   pose.misfit = rigid.misfit;
+  pose.body = rigid.body;
   pose.scale = scaled.scale;
   pose.scale_sd = std::sqrt(scaled.covariance(kScale, kScale));
   double square = 0;
   for (const SeenMark& mark : observations.marks) {
-    pose.residuals_m.push_back((mark.p_W_m - pose.X_WC * mark.seen.p_C_m).norm());
+    pose.residuals_m.push_back(
+        (mark.p_W_m + mark.per_sd * pose.body - pose.X_WC * mark.seen.p_C_m).norm());
     square += pose.residuals_m.back() * pose.residuals_m.back();
   }
   pose.residual_rms_m = std::sqrt(square / static_cast<double>(pose.residuals_m.size()));
@@ -406,93 +445,55 @@ stream::HandSample Recalibrated(const stream::HandSample& sample, const Eigen::I
 
 namespace {
 
-using Places = std::array<Vector3d, 3>;  // Origin, ahead, left, in C.
-
-constexpr double kLeastSpanM = 0.2;
-constexpr double kMostLengthOff = 0.02;
-
-Eigen::Isometry3d PoseOf(const Places& places, const Vector3d& p_WO_m) {
-  const Vector3d x = (places[1] - places[0]).normalized();
-  const Vector3d z = x.cross(places[2] - places[0]).normalized();
-  Eigen::Isometry3d X_CW = Eigen::Isometry3d::Identity();
-  X_CW.linear() << x, z.cross(x), z;
-  X_CW.translation() = places[0] - X_CW.linear() * p_WO_m;
-  return X_CW.inverse();
-}
-
-/// Covariance of turn and shift from the noise of the places, by differences.
-Covariance CovarianceOf(const Places& places, const ThreePoses& poses) {
-  constexpr double kStepM = 1e-6;
-  const Eigen::Isometry3d X_WC = PoseOf(places, poses.p_WO_m);
-  const std::array<const SeenPoint*, 3> seen = {&poses.origin, &poses.ahead, &poses.left};
-  Covariance covariance = Covariance::Zero();
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    Eigen::Matrix<double, 6, 3> rows;
-    for (int axis = 0; axis < 3; ++axis) {
-      Places moved = places;
-      moved[k][axis] += kStepM;
-      const Eigen::Isometry3d change = PoseOf(moved, poses.p_WO_m) * X_WC.inverse();
-      const Eigen::AngleAxisd turn(change.rotation());
-      rows.col(axis) << turn.angle() / kStepM * turn.axis(), change.translation() / kStepM;
-    }
-    const Eigen::Matrix3d noise = seen[k]->covariance_m2 + poses.placement_sd_m *
-                                                               poses.placement_sd_m *
-                                                               Eigen::Matrix3d::Identity();
-    covariance += rows * noise * rows.transpose();
-  }
-  return covariance;
-}
-
-/// Variance of the distance between two places: of each, along the line between them.
-double SpanVarianceM2(const SeenPoint& from, const SeenPoint& to, double placement_sd_m) {
-  const Vector3d along = (to.p_C_m - from.p_C_m).normalized();
-  return along.dot((from.covariance_m2 + to.covariance_m2) * along) +
-         2 * placement_sd_m * placement_sd_m;
-}
-
-std::optional<Error> WrongSpan(const char* name, double seen_m, double known_m,
-                               double variance_m2) {
-  const std::string length = text::Fixed(100 * seen_m, 1) + " cm";
-  if (seen_m < kLeastSpanM)
-    return InvalidData(std::string("the sphere ") + name + " is only " + length +
-                       " from the first place: stretch the arm, 20 cm or more");
-  if (known_m <= 0) return {};
-  const double off_m = std::abs(seen_m - known_m);
-  if (off_m <= kMostLengthOff * known_m || off_m <= 3 * std::sqrt(variance_m2)) return {};
-  return InvalidData(std::string("the sphere ") + name + " is seen " + length +
-                     " from the first place, and should be " + text::Fixed(100 * known_m, 1) +
-                     " cm: the lens file or the sphere's radius is not the true one, or the sphere "
-                     "was not in its place; measure again");
-}
+/// A person's measures over the height, and their standard deviations: 17 skeletons of the CMU and
+/// HDM05 motion libraries. Shoulders are joint centres; an arm ends in the middle of the fist.
+constexpr double kShoulderHeight = 0.791, kShoulderHeightSd = 0.012;
+constexpr double kHalfShoulders = 0.108, kHalfShouldersSd = 0.012;
+constexpr double kArm = 0.351, kArmSd = 0.014;
+/// How far the shoulders are behind the centre of mass, and how much farther while both arms (9 %
+/// of the mass) point ahead and the person leans back; their place over the centre of pressure.
+constexpr double kShouldersBehind = 0.020, kArmsAheadBehind = 0.0185;
+constexpr double kStandingSdM = 0.02;
+// How people hold poses, in radians; no measurement of this is known to us. Hands pass the hips.
+constexpr double kHangOutRad = 0.07;
+constexpr double kHeadingSdRad = 0.035, kArmsLevelSdRad = 0.05;
 
 }  // namespace
 
-Result<CameraPose> FromThreePoses(const ThreePoses& poses) {
-  const Places places = {poses.origin.p_C_m, poses.ahead.p_C_m, poses.left.p_C_m};
-  const Vector3d ahead = places[1] - places[0], left = places[2] - places[0];
-  const auto variance_m2 = [&](const SeenPoint& to) {
-    return SpanVarianceM2(poses.origin, to, poses.placement_sd_m);
+std::vector<Mark> PoseMarks(double height_m, double fist_to_sphere_m) {
+  const double arm_m = kArm * height_m;
+  struct Pose {
+    const char* name;
+    Vector3d arm;  ///< Direction of the left arm.
+    Vector3d to_sphere;
+    double behind;
+    int level;  ///< Index of the measure that says how high the arms are held; -1: they hang.
   };
-  if (auto wrong = WrongSpan("ahead", ahead.norm(), poses.ahead_m, variance_m2(poses.ahead)))
-    return *std::move(wrong);
-  if (auto wrong = WrongSpan("to the left", left.norm(), poses.left_m, variance_m2(poses.left)))
-    return *std::move(wrong);
-  const double angle = std::acos(std::clamp(ahead.normalized().dot(left.normalized()), -1.0, 1.0));
-  if (!(angle >= DegreesToRadians(60) && angle <= DegreesToRadians(120)))
-    return InvalidData("the second and the third place are " +
-                       text::Fixed(RadiansToDegrees(angle), 0) +
-                       " degrees apart as seen from the first, 60 to 120 are needed: point "
-                       "straight ahead, then straight to the left");
-  CameraPose pose;
-  pose.X_WC = PoseOf(places, poses.p_WO_m);
-  if (pose.X_WC.linear()(2, 1) > 0)
-    return InvalidData(
-        "the camera would stand on its head: the image is mirrored, or the third place was to the "
-        "right. Switch mirroring off in the camera, and point to the left");
-  pose.covariance = CovarianceOf(places, poses);
-  pose.residuals_m = {0, 0, std::abs(left.norm() * std::cos(angle))};
-  pose.residual_rms_m = pose.residuals_m[2] / std::sqrt(3.0);
-  return pose;
+  const Pose poses[] = {
+      {"arms down", {0, std::sin(kHangOutRad), -std::cos(kHangOutRad)}, Vector3d::UnitX(), 0, -1},
+      {"arms ahead", Vector3d::UnitX(), Vector3d::UnitZ(), kArmsAheadBehind, 6},
+      {"arms to the sides", Vector3d::UnitY(), Vector3d::UnitZ(), 0, 7}};
+  std::vector<Mark> marks;
+  for (const Pose& pose : poses) {
+    for (const double side : {1.0, -1.0}) {
+      const Vector3d arm(pose.arm.x(), side * pose.arm.y(), pose.arm.z());
+      const Vector3d shoulder = height_m * Vector3d(-kShouldersBehind - pose.behind,
+                                                    side * kHalfShoulders, kShoulderHeight);
+      Mark mark;
+      mark.name = std::string(side > 0 ? "left" : "right") + " hand, " + pose.name;
+      mark.p_W_m = shoulder + arm_m * arm + fist_to_sphere_m * pose.to_sphere;
+      mark.per_sd.col(0) = kShoulderHeightSd * height_m * Vector3d::UnitZ();
+      mark.per_sd.col(1) = side * kHalfShouldersSd * height_m * Vector3d::UnitY();
+      mark.per_sd.col(2) = kArmSd * height_m * arm;
+      mark.per_sd.col(3) = kStandingSdM * Vector3d::UnitX();
+      mark.per_sd.col(4) = kStandingSdM * Vector3d::UnitY();
+      mark.per_sd.col(5) = kHeadingSdRad * Vector3d::UnitZ().cross(mark.p_W_m);
+      if (pose.level >= 0)
+        mark.per_sd.col(pose.level) = kArmsLevelSdRad * arm_m * Vector3d::UnitZ();
+      marks.push_back(mark);
+    }
+  }
+  return marks;
 }
 
 namespace {
@@ -514,17 +515,18 @@ CornerPlaces AsSeen(CornerPlaces places) {
 }
 
 void AddMarks(const stream::BoardPose& pose, const std::optional<stream::BoardGeometry>& geometry,
-              const std::string& which, double radius_m, std::vector<BoardMark>& marks) {
+              const std::string& which, double radius_m, std::vector<Mark>& marks) {
   const CornerPlaces places = AsSeen(board::SensorPlaces(pose, board::GeometryOr(geometry)));
   for (std::size_t i = 0; i < board::kCorners; ++i)
-    marks.push_back({kCorner[i] + which, {places[i].x(), places[i].y(), radius_m}});
+    marks.push_back(
+        {kCorner[i] + which, {places[i].x(), places[i].y(), radius_m}, PerMeasure::Zero()});
 }
 
 }  // namespace
 
-std::vector<BoardMark> BoardMarks(const stream::BoardLayout& layout, double radius_m) {
+std::vector<Mark> BoardMarks(const stream::BoardLayout& layout, double radius_m) {
   const bool is_single = layout.preset == "single";
-  std::vector<BoardMark> marks;
+  std::vector<Mark> marks;
   AddMarks(layout.left, layout.left_geometry, is_single ? "" : ", left board", radius_m, marks);
   if (!is_single) AddMarks(layout.right, layout.right_geometry, ", right board", radius_m, marks);
   return marks;

@@ -19,10 +19,22 @@ struct SeenPoint {
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
 };
 
-/// A sphere on a point whose place in W is known.
-struct SeenMark {
-  std::string name;
-  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Centre of the sphere.
+/// Measures of a person that no sensor has: height and half the distance of the shoulders, length
+/// of an arm, place over the centre of pressure (x, y), heading, and how high both arms are held
+/// ahead and to the sides.
+inline constexpr int kBodyMeasures = 8;
+/// How far a point of the body moves in W per standard deviation of each measure, m.
+using PerMeasure = Eigen::Matrix<double, 3, kBodyMeasures>;
+
+/// A point in W that a sphere is held on.
+struct Mark {
+  std::string name;                        ///< As a person finds it: "front left, left board".
+  Eigen::Vector3d p_W_m{0, 0, 0};          ///< Centre of the sphere.
+  PerMeasure per_sd = PerMeasure::Zero();  ///< Zero on a board.
+};
+
+/// A mark, and where the camera saw the sphere on it.
+struct SeenMark : Mark {
   SeenPoint seen;
 };
 
@@ -38,6 +50,7 @@ struct Observations {
   std::vector<SeenMark> marks;
   std::vector<SeenPlumb> plumbs;
   double placement_sd_m = 0.001;  ///< Standard deviation of the sphere's place on a mark, per axis.
+  bool in_poses = false;          ///< The marks are those of PoseMarks, not of the boards.
 };
 
 /// Frames of a sphere at rest that are enough for a mean: half a second of a camera at 60 Hz.
@@ -45,8 +58,9 @@ inline constexpr std::size_t kLeastFrames = 30;
 
 /// The mean of a sphere at rest. What of the frames' covariance does not show as scatter is common
 /// to all frames (blur and limb of the camera file, the same pixels) and is not averaged away.
-/// Refuses fewer than kLeastFrames, and a sphere that moved.
-Result<SeenPoint> MeanAtRest(const std::vector<SeenPoint>& frames);
+/// Refuses fewer than kLeastFrames, and a sphere that moved: its scatter is more than noise and the
+/// trembling of a hand explain. A hand against a board trembles by less than a millimetre.
+Result<SeenPoint> MeanAtRest(const std::vector<SeenPoint>& frames, double tremble_m = 0.001);
 
 /// Where a camera stands in the boards' world frame W.
 using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -63,6 +77,8 @@ struct CameraPose {
   double scale_sd = 0;
   double misfit = 0;    ///< Squared residuals over what noise and placement explain; about 1.
   double tilt_rad = 0;  ///< Between gravity by the plumbs and the vertical of the marks.
+  /// The person's measures by the fit, in standard deviations from the expected ones.
+  Eigen::Matrix<double, kBodyMeasures, 1> body = Eigen::Matrix<double, kBodyMeasures, 1>::Zero();
 
   /// Covariance of a point of W, as what the pose adds to a measurement.
   Eigen::Matrix3d CovarianceAt(const Eigen::Vector3d& p_W_m) const;
@@ -77,7 +93,7 @@ CameraPose Fit(const Observations& observations);
 /// `Fit`, and refusals, each with what, why and what to do: fewer than three marks, marks in a line
 /// (within 0.1 m), a mirrored image, lengths that are off by more than 2 %, a mark in the wrong
 /// place, gravity that is off by more than 4 degrees, and a turn that stays uncertain by more than
-/// 1 degree.
+/// 1 degree (in poses 4).
 Result<CameraPose> Calibrate(const Observations& observations);
 
 /// Sight of a tracker in its own frame, from the sample that footingd published of it in W. Nothing
@@ -87,31 +103,24 @@ std::optional<SeenPoint> InTrackerFrame(const stream::HandSample& sample);
 /// The same sight by another calibration. A sample of a tracker without a frame stays as it is.
 stream::HandSample Recalibrated(const stream::HandSample& sample, const Eigen::Isometry3d& X_WC);
 
-/// The paper's calibration (Ha, Bai & Liu 2011, section 5.1, Figure 3): the sphere at the origin of
-/// the axes, then ahead of it, then to its left.
-struct ThreePoses {
-  SeenPoint origin, ahead, left;
-  Eigen::Vector3d p_WO_m{0, 0, 0};  ///< Where in W the sphere was in the first pose.
-  /// Distances of the other two from the first, where they are known; 0: not known.
-  double ahead_m = 0, left_m = 0;
-  double placement_sd_m = 0.025;  ///< Deviation of a hand that holds a pose, per axis.
-};
+/// The paper's calibration (Ha, Bai & Liu 2011, section 5.1, Figure 3: three poses define the
+/// origin and the axes of the world) with a sphere in each hand. The person stands on the boards
+/// with the arms hanging, straight ahead, and out to the sides; W has z up from the boards'
+/// surface, x ahead. The paper does not say which poses its figure shows.
+///
+/// Places of the left and the right sphere in each pose, in this order, of a person of this height
+/// whose centre of pressure is W's origin: add the measured one. The shoulders' place and the arms'
+/// length are shares of the height. `fist_to_sphere_m`: how far the sphere is from the middle of
+/// the fist, ahead while the arms hang and up otherwise.
+std::vector<Mark> PoseMarks(double height_m, double fist_to_sphere_m);
 
-/// x points from the first place to the second, and the third is on y's side. Refuses places nearer
-/// than 0.2 m, an angle between them outside of 60 to 120 degrees, known distances that are off by
-/// more than 2 % and three standard deviations of placement and of what was seen, and a mirrored
-/// image.
-Result<CameraPose> FromThreePoses(const ThreePoses& poses);
-
-/// A point on a board's surface that a sphere is held on.
-struct BoardMark {
-  std::string name;                ///< As a person finds it: "front left, left board".
-  Eigen::Vector3d p_W_m{0, 0, 0};  ///< Centre of a sphere that lies on it.
-};
+inline constexpr double kPoseSdM = 0.025;       ///< Hand that holds a pose, per axis.
+inline constexpr double kPoseTrembleM = 0.008;  ///< Motion of a hand that holds a pose.
+inline constexpr double kFistToSphereM = 0.11;  ///< For a PS Move.
 
 /// Four marks on each board, over its load cells, whose places the layout and the board's geometry
 /// give; the plates' surface is z = 0 of W, as for the feet on it. Front and left are the person's,
 /// also of a board that lies turned. The left board first; of "single" it is the only one.
-std::vector<BoardMark> BoardMarks(const stream::BoardLayout& layout, double radius_m);
+std::vector<Mark> BoardMarks(const stream::BoardLayout& layout, double radius_m);
 
 }  // namespace footing::camera_pose

@@ -13,7 +13,7 @@
 
 namespace footing::guide {
 
-/// A mark of the boards while a camera's pose is calibrated, for whoever draws it.
+/// A mark while a camera's pose is calibrated, for whoever draws it.
 struct MarkState {
   enum class Stage { kToCome, kNext, kTaken };
   std::string name;
@@ -56,6 +56,9 @@ struct SetUpOptions {
   /// Which of its spheres is held on the marks, and how large it is.
   stream::DeviceRole camera_role = stream::DeviceRole::kUnspecified;
   double camera_radius_m = 0;
+  /// Height of a person who holds both spheres in three poses; 0: one is held on marks.
+  double poses_height_m = 0;
+  double fist_to_sphere_m = camera_pose::kFistToSphereM;
 
   static constexpr double kNoGapMm = -1;  ///< The default one.
 };
@@ -116,24 +119,28 @@ stream::SetupItem Outcome(Item item, const std::string& serial, bool passed, dou
                           const std::string& unit, const std::string& note);
 
 /// Calibrates where a camera stands: the person holds a sphere on each mark of the boards and, with
-/// a PS Move, stands it upright on one mark of each board, for gravity. Without a camera file in
-/// the options it finishes at once, without a result.
+/// a PS Move, stands it upright on one mark of each board, for gravity. Or the person stands on the
+/// boards and holds the spheres of both hands in three poses. Without a camera file in the options
+/// it finishes at once, without a result.
 class CameraStep {
  public:
   Progress Advance(const Situation& now, const SetUpOptions& options);
 
  private:
-  /// A stretch of a sphere at rest, or why there is none yet.
+  /// A stretch of the place's spheres at rest, or why there is none yet.
   struct Rest {
-    std::optional<camera_pose::SeenPoint> seen;
-    double tilt_rad = 0;  ///< Tilt of the controller's long axis against gravity.
+    std::vector<camera_pose::SeenMark> seen;  ///< One, in poses both; empty: none yet.
+    double tilt_rad = 0;                      ///< Tilt of the controller's long axis.
     std::string feedback;
     double share = 0;  ///< Share of the stretch.
   };
 
   void Begin(const Situation& now, const SetUpOptions& options);
-  Rest Look(const Situation& now, const SetUpOptions& options, bool upright) const;
-  /// Why the sphere at rest cannot be at the place that is asked for; empty when it can.
+  Rest Look(const Situation& now, const SetUpOptions& options) const;
+  /// Centre of pressure of who stands on the boards, W; nothing when nobody does.
+  std::optional<Eigen::Vector2d> Standing(const Situation& now, const SetUpOptions& options,
+                                          std::int64_t from_ns) const;
+  /// Why the spheres at rest cannot be at the place that is asked for; empty when they can.
   std::string Doubt(const Rest& rest) const;
   void Take(const Rest& rest);
   Progress Ask() const;
@@ -143,11 +150,13 @@ class CameraStep {
   Progress Stored(const Situation& now);
 
   bool begun_ = false, stored_ = false;
-  std::vector<camera_pose::BoardMark> marks_;
-  std::vector<std::size_t> places_;  ///< Indices of marks_, in the order asked for.
-  std::vector<bool> upright_;        ///< Whether each place is an upright one.
-  std::size_t next_ = 0;             ///< Index into places_.
-  std::int64_t asked_ns_ = 0;        ///< When the present place was asked for.
+  stream::BoardLayout layout_;
+  std::vector<camera_pose::Mark> marks_;
+  std::vector<stream::DeviceRole> roles_;  ///< Spheres of a place: one, in poses both hands'.
+  std::vector<std::size_t> places_;        ///< First of marks_, in the order asked for.
+  std::vector<bool> upright_;              ///< Whether each place is an upright one.
+  std::size_t next_ = 0;                   ///< Index into places_.
+  std::int64_t asked_ns_ = 0;              ///< When the present place was asked for.
   std::string picture_;
   camera_pose::Observations observations_;
   camera_pose::CameraPose pose_;

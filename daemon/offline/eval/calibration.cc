@@ -31,19 +31,21 @@ constexpr double kControllerM = 0.178;
 /// How far from upright a person holds a controller that shows its own inclination, and what a PS
 /// Move's calibrated accelerometer is off.
 constexpr double kUprightSdRad = DegreesToRadians(0.5);
-constexpr double kArmM = 0.6;
+constexpr double kHeightM = 1.75;  // Height of who holds the poses.
+constexpr double kRaisedM = 0.45;  // How much higher a camera looks that has to see the arms.
 
 Vector3d Scatter(double sd, noise::Random& random) {
   return sd * Vector3d(random.Normal(), random.Normal(), random.Normal());
 }
 
-/// In front of the person, at about a table's height, and nearly level.
-Eigen::Isometry3d PlaceCamera(double distance_m, noise::Random& random) {
+/// In front of the person, at about a table's height, and nearly level. It looks at the boards, or
+/// `raised_m` above them at a person whose hands it has to see.
+Eigen::Isometry3d PlaceCamera(double distance_m, double raised_m, noise::Random& random) {
   const double bearing = DegreesToRadians(random.Uniform(-20, 20));
   const Vector3d place(distance_m * std::cos(bearing), distance_m * std::sin(bearing),
                        random.Uniform(0.8, 1.4));
   const Vector3d target(random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1),
-                        random.Uniform(0.55, 0.75));
+                        raised_m + random.Uniform(0.55, 0.75));
   const Vector3d forward = (target - place).normalized();
   const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();
   Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
@@ -77,7 +79,7 @@ class Person {
   Person(const CalibrationTrial& trial, const frames::CameraFile& file, noise::Random& random)
       : trial_(trial),
         random_(random),
-        X_WC_(PlaceCamera(trial.distance_m, random)),
+        X_WC_(PlaceCamera(trial.distance_m, trial.method == "poses" ? kRaisedM : 0, random)),
         radius_m_(file.spheres[0].target.radius_m),
         file_(file) {}
 
@@ -115,7 +117,7 @@ class Person {
       const Vector3d place = marks[i].p_W_m + Scatter(trial_.placement_sd_m, random_);
       const auto seen = Hold(place);
       if (!seen) return seen.error();
-      observations.marks.push_back({marks[i].name, marks[i].p_W_m, *seen});
+      observations.marks.push_back({marks[i], *seen});
       if (trial_.method != "gravity" || i % 4 != 0) continue;
       const auto plumb = StandUpright(marks[i].p_W_m, *seen);
       if (!plumb) return plumb.error();
@@ -125,17 +127,19 @@ class Person {
   }
 
   Result<camera_pose::CameraPose> CalibrateByPoses() {
-    camera_pose::ThreePoses poses;
-    poses.p_WO_m = {0, 0, 1.2};
-    poses.placement_sd_m = trial_.placement_sd_m;
-    const Vector3d places[] = {{0, 0, 0}, {kArmM, 0, 0}, {0, kArmM, 0}};
-    camera_pose::SeenPoint* const seen[] = {&poses.origin, &poses.ahead, &poses.left};
-    for (int i = 0; i < 3; ++i) {
-      const auto held = Hold(poses.p_WO_m + places[i] + Scatter(trial_.placement_sd_m, random_));
-      if (!held) return held.error();
-      *seen[i] = *held;
+    camera_pose::Observations observations;
+    observations.in_poses = true;
+    observations.placement_sd_m = trial_.placement_sd_m;
+    // A person who differs from the expected one.
+    Eigen::Matrix<double, camera_pose::kBodyMeasures, 1> body;
+    for (double& measure : body) measure = random_.Normal();
+    for (const auto& mark : camera_pose::PoseMarks(kHeightM, camera_pose::kFistToSphereM)) {
+      const auto seen =
+          Hold(mark.p_W_m + mark.per_sd * body + Scatter(trial_.placement_sd_m, random_));
+      if (!seen) return seen.error();
+      observations.marks.push_back({mark, *seen});
     }
-    return camera_pose::FromThreePoses(poses);
+    return camera_pose::Calibrate(observations);
   }
 
  private:
@@ -215,19 +219,13 @@ Result<ordered_json> RunCalibrationTrial(const CalibrationTrial& trial,
   return row;
 }
 
-namespace {
-
-constexpr double kPosePlacementSdM = 0.025;  // Placement error of an arm in the air, per axis.
-
-}  // namespace
-
 void AddCalibrationCommand(CLI::App& app, Shared& shared) {
   auto* command = app.add_subcommand(
       "calibration", "Errors of a camera's calibration on rendered frames, over random places");
   const auto trial = std::make_shared<CalibrationTrial>();
   command
       ->add_option("--method", trial->method,
-                   "marks of the boards, marks and gravity, or three poses in the air")
+                   "marks of the boards, marks and gravity, or poses: three, with both hands")
       ->check(CLI::IsMember(CalibrationMethods()));
   command->add_option("--boards", trial->boards, "Boards with marks (default 2)")
       ->check(CLI::Range(1, 2));
@@ -248,7 +246,7 @@ void AddCalibrationCommand(CLI::App& app, Shared& shared) {
   command->add_option("--seed", trial->seed, "Seed of places and noise");
   command->callback([trial, placement, &shared] {
     if (trial->method == "poses" && placement->count() == 0)
-      trial->placement_sd_m = kPosePlacementSdM;
+      trial->placement_sd_m = camera_pose::kPoseSdM;
     Progress progress("calibration", "trials", trial->trials, clock::MonotonicNs());
     const auto on_done = [&](int done) { progress.Done(done, clock::MonotonicNs(), std::cerr); };
     shared.exit_code = PrintResult(RunCalibrationTrial(*trial, on_done), shared.json);

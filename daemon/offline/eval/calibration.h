@@ -24,7 +24,7 @@ struct CalibrationTrial {
 };
 
 /// marks; gravity: a mark of each board also with the controller upright above it; poses: the
-/// paper's three, with the arm in the air.
+/// paper's three, of a person 1.75 m tall who differs from the mean by the spread of people.
 const std::vector<std::string>& CalibrationMethods();
 
 /// Renders the sphere on every mark, finds it, calibrates, and compares: the turn, and a hand 1.2 m

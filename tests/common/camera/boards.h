@@ -43,8 +43,8 @@ inline SeenPoint SeenAt(const Eigen::Isometry3d& X_WC, const Eigen::Vector3d& p_
 /// Without noise.
 inline Observations Seen(const Eigen::Isometry3d& X_WC) {
   Observations observations;
-  for (const BoardMark& mark : BoardMarks(board::DefaultLayout(), kRadiusM))
-    observations.marks.push_back({mark.name, mark.p_W_m, SeenAt(X_WC, mark.p_W_m)});
+  for (const Mark& mark : BoardMarks(board::DefaultLayout(), kRadiusM))
+    observations.marks.push_back({mark, SeenAt(X_WC, mark.p_W_m)});
   return observations;
 }
 

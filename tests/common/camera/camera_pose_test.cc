@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
+#include "common/base/units.h"
 #include "common/camera/camera_pose.h"
 #include "tests/common/camera/boards.h"
 
@@ -76,10 +77,9 @@ TEST(CameraPose, CovarianceIsThatOfItsErrors) {
 TEST(CameraPose, PlumbsHoldTheVerticalThatMarksLeaveOpen) {
   Observations observations;
   const auto marks = BoardMarks(*board::LayoutNamed("single", 20), kRadiusM);
-  for (const BoardMark& mark : marks)
-    observations.marks.push_back({mark.name, mark.p_W_m, SeenAt(kTrue, mark.p_W_m)});
+  for (const Mark& mark : marks) observations.marks.push_back({mark, SeenAt(kTrue, mark.p_W_m)});
   const double alone = Fit(observations).TurnSdRad();
-  for (const BoardMark& mark : marks)
+  for (const Mark& mark : marks)
     observations.plumbs.push_back(
         {SeenAt(kTrue, mark.p_W_m), SeenAt(kTrue, mark.p_W_m + Vector3d(0, 0, 0.19)), 0.005});
   const auto pose = Calibrate(observations);
@@ -221,60 +221,91 @@ TEST(Samples, WhatWasNotSeenOrHasNoFrameStays) {
   EXPECT_EQ(Recalibrated(skeleton, kLater).position_m, skeleton.position_m);
 }
 
-const Vector3d kOrigin(0.1, 0, 1.2);
+constexpr double kHeightM = 1.74;
 
-ThreePoses Seen(const Vector3d& ahead, const Vector3d& left) {
-  ThreePoses poses;
-  poses.p_WO_m = kOrigin;
-  poses.origin = SeenAt(kTrue, kOrigin);
-  poses.ahead = SeenAt(kTrue, kOrigin + ahead);
-  poses.left = SeenAt(kTrue, kOrigin + left);
-  return poses;
+/// A person of that height whose measures are off by `body` standard deviations.
+Observations Poses(const Eigen::Matrix<double, kBodyMeasures, 1>& body) {
+  Observations observations;
+  observations.in_poses = true;
+  observations.placement_sd_m = kPoseSdM;
+  for (const Mark& mark : PoseMarks(kHeightM, kFistToSphereM))
+    observations.marks.push_back({mark, SeenAt(kTrue, mark.p_W_m + mark.per_sd * body)});
+  return observations;
 }
 
-TEST(ThreePoses, GiveTheTruePoseWithoutNoise) {
-  // The third need not be at a right angle: only its side counts.
-  const auto pose = FromThreePoses(Seen({0.4, 0, 0}, {0.1, 0.4, 0}));
+const Eigen::Matrix<double, kBodyMeasures, 1> kAsExpected =
+    Eigen::Matrix<double, kBodyMeasures, 1>::Zero();
+
+TEST(Poses, AreAPersonsWithArmsDownAheadAndToTheSides) {
+  const auto marks = PoseMarks(kHeightM, kFistToSphereM);
+  ASSERT_EQ(marks.size(), 6u);
+  EXPECT_EQ(marks[0].name, "left hand, arms down");
+  EXPECT_EQ(marks[5].name, "right hand, arms to the sides");
+  const double arm_m = 0.351 * kHeightM, shoulder_m = 0.791 * kHeightM;
+  EXPECT_NEAR(marks[0].p_W_m.z(), shoulder_m - std::cos(0.07) * arm_m, 1e-9);
+  EXPECT_NEAR(marks[2].p_W_m.z(), shoulder_m + 0.11, 1e-9);  // The spheres are above the fists,
+  EXPECT_NEAR(marks[0].p_W_m.x(), 0.11 - 0.020 * kHeightM, 1e-9);  // and before hanging ones.
+  EXPECT_NEAR(marks[2].p_W_m.x(), arm_m - 0.0385 * kHeightM, 1e-9);
+  EXPECT_NEAR(marks[4].p_W_m.y() - marks[5].p_W_m.y(), 2 * (arm_m + 0.108 * kHeightM), 1e-9);
+}
+
+TEST(Poses, OfThePersonThatIsExpectedGiveTheTrueCamera) {
+  const auto pose = Calibrate(Poses(kAsExpected));
   ASSERT_TRUE(pose) << pose.error().message;
   EXPECT_TRUE(pose->X_WC.isApprox(kTrue, 1e-9));
+  EXPECT_LT(pose->residual_rms_m, 1e-9);
 }
 
-TEST(ThreePoses, CovarianceIsThatOfItsErrors) {
+TEST(Poses, ShowHowLongThePersonsArmsAre) {
+  auto body = kAsExpected;
+  body[2] = 2;  // 49 mm longer.
+  const auto pose = Calibrate(Poses(body));
+  ASSERT_TRUE(pose) << pose.error().message;
+  EXPECT_NEAR(pose->body[2], 2, 0.6);
+  // Less than half of what the hands are off.
+  EXPECT_LT((pose->X_WC.translation() - kTrue.translation()).norm(), 0.024);
+}
+
+TEST(Poses, CovarianceIsThatOfItsErrors) {
   noise::Random random(5);
   const Vector3d hand(0.2, 0.3, 1.4);
   double nees = 0;
-  constexpr int kTrials = 500;
+  constexpr int kTrials = 150;
   for (int i = 0; i < kTrials; ++i) {
-    ThreePoses poses = Seen({0.5, 0, 0}, {0, 0.5, 0});
-    poses.placement_sd_m = 0.005;
-    for (SeenPoint* seen : {&poses.origin, &poses.ahead, &poses.left})
-      seen->p_C_m += 0.005 * Normal3(random);
-    for (SeenPoint* seen : {&poses.origin, &poses.ahead, &poses.left})
-      seen->covariance_m2.setZero();
-    const auto pose = FromThreePoses(poses);
-    ASSERT_TRUE(pose) << pose.error().message;
-    const Vector3d error = pose->X_WC * (kTrue.inverse() * hand) - hand;
-    nees += error.dot(pose->CovarianceAt(hand).ldlt().solve(error)) / 3 / kTrials;
+    auto body = kAsExpected;
+    for (double& measure : body) measure = random.Normal();
+    Observations poses = Poses(body);
+    for (SeenMark& mark : poses.marks) mark.seen.p_C_m += kPoseSdM * Normal3(random);
+    const CameraPose pose = Fit(poses);
+    const Vector3d error = pose.X_WC * (kTrue.inverse() * hand) - hand;
+    nees += error.dot(pose.CovarianceAt(hand).ldlt().solve(error)) / 3 / kTrials;
+    EXPECT_LT(RadiansToDegrees(pose.TurnSdRad()), 3);
   }
   EXPECT_NEAR(nees, 1, 0.2);
 }
 
-TEST(ThreePoses, RefusesShortAnglesLengthsAndMirrors) {
-  EXPECT_THAT(FromThreePoses(Seen({0.1, 0, 0}, {0, 0.4, 0})).error().message, HasSubstr("10.0 cm"));
-  EXPECT_THAT(FromThreePoses(Seen({0.4, 0, 0}, {0.4, 0.2, 0})).error().message,
-              HasSubstr("27 degrees apart"));
-  EXPECT_THAT(FromThreePoses(Seen({0.4, 0, 0}, {0, -0.4, 0})).error().message,
-              HasSubstr("on its head"));
-  ThreePoses poses = Seen({0.4, 0, 0}, {0, 0.4, 0});
-  poses.placement_sd_m = 0.001;
-  poses.left_m = 0.38;
-  EXPECT_THAT(FromThreePoses(poses).error().message,
-              HasSubstr("to the left is seen 40.0 cm from the first place, and should be 38.0 cm"));
-  // Seen with 10 mm along every axis the distance has 14 mm: 20 mm off are nothing.
-  poses.left.covariance_m2 = poses.origin.covariance_m2 = 1e-4 * Eigen::Matrix3d::Identity();
-  EXPECT_TRUE(FromThreePoses(poses));
-  poses.left_m = 0.35;
-  EXPECT_FALSE(FromThreePoses(poses)) << "50 mm are more than three times that";
+TEST(Poses, OfAMirrorOrWithControllersInTheWrongHandsAreRefused) {
+  Observations exchanged = Poses(kAsExpected);
+  for (std::size_t i = 0; i < 6; i += 2)
+    std::swap(exchanged.marks[i].seen, exchanged.marks[i + 1].seen);
+  EXPECT_THAT(RefusalOf(exchanged), HasSubstr("each controller is in the other hand"));
+  Observations mirrored = Poses(kAsExpected);
+  for (SeenMark& mark : mirrored.marks) mark.seen.p_C_m.x() *= -1;
+  EXPECT_THAT(RefusalOf(mirrored), HasSubstr("as in a mirror"));
+}
+
+TEST(Poses, WithAWrongArmNameIt) {
+  // The right arm hangs on while the left one points ahead.
+  Observations poses = Poses(kAsExpected);
+  poses.marks[3].seen = poses.marks[1].seen;
+  EXPECT_THAT(RefusalOf(poses), HasSubstr("the right hand, arms ahead, is"));
+}
+
+TEST(Poses, SeenTooLargeAreRefused) {
+  // With noise, arms may be longer than expected; 30 % is a lens, or another person.
+  Observations poses = Poses(kAsExpected);
+  for (SeenMark& mark : poses.marks) mark.seen.p_C_m *= 1.3;
+  EXPECT_THAT(RefusalOf(poses), HasSubstr("Check the height"));
 }
 
 }  // namespace

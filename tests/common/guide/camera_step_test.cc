@@ -78,7 +78,7 @@ class Holder {
   std::vector<MarksState> shown;
 
  private:
-  void Hear(const std::string& prompt) {
+  virtual void Hear(const std::string& prompt) {
     if (prompt == heard_ || prompt.empty()) return;
     heard_ = prompt;
     heard_ns_ = now_ns_;
@@ -92,15 +92,24 @@ class Holder {
     }
   }
 
-  void See() {
+  virtual void See() {
     const double share = std::min(1.0, 2 * NanosecondsToSeconds(now_ns_ - heard_ns_));
-    const Vector3d place = from_ + share * (to_ - from_);
+    See(stream::DeviceRole::kLeftHand, from_ + share * (to_ - from_));
+    stream::MotionSample motion;
+    motion.device = 9;
+    motion.received_ns = now_ns_ - 1;
+    motion.specific_force_mps2 = {0, 9.8, 0.1};
+    recent_.Add(motion);
+  }
+
+ protected:
+  void See(stream::DeviceRole role, const Vector3d& place) {
     const auto at = camera_pose::SeenAt(kTrue, place);
     const Eigen::LLT<Eigen::Matrix3d> root(at.covariance_m2);
     const Vector3d noise = root.matrixL() * camera_pose::Normal3(random_);
     stream::HandSample sample;
     sample.rig = "main";
-    sample.role = stream::DeviceRole::kLeftHand;
+    sample.role = role;
     sample.received_ns = sample.sampled_ns = now_ns_ - 1;
     sample.position_m = at.p_C_m + noise;
     sample.sd_m = at.covariance_m2.diagonal().cwiseSqrt();
@@ -112,14 +121,9 @@ class Holder {
     sample.confidence = 0.9;
     sample.tracker_pose = stream::TrackerPose{};
     recent_.Add(sample);
-    stream::MotionSample motion;
-    motion.device = 9;
-    motion.received_ns = now_ns_ - 1;
-    motion.specific_force_mps2 = {0, 9.8, 0.1};
-    recent_.Add(motion);
   }
 
-  std::vector<camera_pose::BoardMark> marks_;
+  std::vector<camera_pose::Mark> marks_;
   std::int64_t now_ns_ = 100'000'000'000, heard_ns_ = 0;
   Vector3d from_{0.3, 0.2, 1.1}, to_{0.3, 0.2, 1.1};
   std::string heard_;
@@ -127,6 +131,68 @@ class Holder {
   std::vector<stream::RigSetup> setup_;
   std::vector<Answer> answers_;
   noise::Random random_{3};
+};
+
+/// Somebody who stands on two boards and holds what is asked for, with both spheres, trembling.
+class Poser : public Holder {
+ public:
+  Poser() {
+    options.poses_height_m = 1.74;
+    std::vector<stream::DeviceStatus> boards(2);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      boards[i].device = i + 1;
+      boards[i].kind = stream::DeviceKind::kBalanceBoard;
+      boards[i].state = stream::DeviceState::kLive;
+      boards[i].role = i == 0 ? stream::DeviceRole::kLeftBoard : stream::DeviceRole::kRightBoard;
+      boards[i].rig = "main";
+    }
+    recent_.SetDevices(boards);
+    poses_ = camera_pose::PoseMarks(1.74, camera_pose::kFistToSphereM);
+  }
+
+  bool exchanged = false;          ///< Each controller is in the other hand.
+  bool stands = true;              ///< On the boards.
+  double moving_m = 0;             ///< How far the left hand goes to and fro.
+  std::vector<int> right_holds{};  ///< The right hand's pose in each one; empty: as asked.
+
+ private:
+  void Hear(const std::string& prompt) override {
+    if (prompt == heard_ || prompt.empty()) return;
+    heard_ = prompt;
+    prompts.push_back(prompt);
+    pose_ = prompt.find("ahead") != std::string::npos   ? 1
+            : prompt.find("sides") != std::string::npos ? 2
+                                                        : 0;
+  }
+  void See() override {
+    const std::size_t right_pose =
+        right_holds.empty() ? pose_ : static_cast<std::size_t>(right_holds[pose_]);
+    // Over the middle of the feet, 3 cm ahead of the origin.
+    const Vector3d over(0.03, 0, 0);
+    const double moved_m = moving_m * std::sin(3 * NanosecondsToSeconds(now_ns_));
+    const Vector3d left = poses_[2 * pose_].p_W_m + over + Vector3d(0, moved_m, 0) + Trembling();
+    const Vector3d right = poses_[2 * right_pose + 1].p_W_m + over + Trembling();
+    Holder::See(stream::DeviceRole::kLeftHand, exchanged ? right : left);
+    Holder::See(stream::DeviceRole::kRightHand, exchanged ? left : right);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      stream::BoardSample board;
+      board.device = i + 1;
+      board.received_ns = now_ns_ - 1;
+      board.total_n = stands ? 340 : 2;
+      board.cop_valid = stands;
+      // 3 cm ahead of the plate's middle; in its frame x is to the right and y to the front.
+      const auto layout = board::DefaultLayout();
+      const double yaw_rad = i == 0 ? layout.left.yaw_rad : layout.right.yaw_rad;
+      const Eigen::Vector2d ahead = Eigen::Rotation2Dd(-yaw_rad) * Eigen::Vector2d(0.03, 0);
+      board.cop_x_m = -ahead.y();
+      board.cop_y_m = ahead.x();
+      recent_.Add(board);
+    }
+  }
+  Vector3d Trembling() { return 0.003 * camera_pose::Normal3(random_); }
+
+  std::vector<camera_pose::Mark> poses_;
+  std::size_t pose_ = 0;
 };
 
 double TurnDeg(const Eigen::Isometry3d& X_WC) {
@@ -210,6 +276,44 @@ TEST(CameraStep, DoesNotTakeASphereThatRestsElsewhereForOneOnTheMark) {
   lazy.lazy = "rear right, left board";
   EXPECT_THAT(lazy.Do().at(0).note,
               HasSubstr("24 cm from the mark at the front left, left board, should be 49 cm"));
+}
+
+TEST(CameraStep, LeadsThroughThreePosesToAStoredPose) {
+  Poser poser;
+  const auto results = poser.Do();
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_TRUE(results[0].passed) << results[0].note;
+  EXPECT_THAT(results[0].note, HasSubstr("three poses, residual"));
+  ASSERT_EQ(poser.prompts.size(), 3u);
+  EXPECT_THAT(poser.prompts[1], HasSubstr("both arms straight ahead"));
+  ASSERT_EQ(poser.stored.size(), 1u);
+  EXPECT_LT(TurnDeg(poser.stored[0].X_WC), 0.5);
+  // The person stands 3 cm ahead of the origin, and the boards say so.
+  EXPECT_LT((poser.stored[0].X_WC.translation() - kTrue.translation()).norm(), 0.015);
+  EXPECT_EQ(poser.shown.back().marks.size(), 6u);
+  EXPECT_TRUE(poser.shown.back().marks[5].residual_m);
+}
+
+TEST(CameraStep, DoesNotTakeAPoseOfAWrongArmOrOfAHandThatMoves) {
+  Poser one_arm;
+  one_arm.right_holds = {0, 0, 2};  // The right arm hangs on while the left one is ahead.
+  const std::string note = one_arm.Do().at(0).note;
+  EXPECT_THAT(note, HasSubstr("right hand, arms ahead: "));
+  EXPECT_THAT(note, HasSubstr("from the left hand, arms down, should be about"));
+  Poser moving;
+  moving.moving_m = 0.05;
+  EXPECT_THAT(moving.Do().at(0).note, HasSubstr("left hand: the sphere moved by"));
+  EXPECT_TRUE(one_arm.stored.empty() && moving.stored.empty());
+}
+
+TEST(CameraStep, RefusesPosesWithExchangedControllersOrBesideTheBoards) {
+  Poser exchanged;
+  exchanged.exchanged = true;
+  EXPECT_THAT(exchanged.Do().at(0).note, HasSubstr("each controller is in the other hand"));
+  Poser beside;
+  beside.stands = false;
+  EXPECT_THAT(beside.Do().at(0).note, HasSubstr("nobody stands on the boards"));
+  EXPECT_TRUE(exchanged.stored.empty() && beside.stored.empty());
 }
 
 TEST(CameraStep, WithoutACameraFileAsksNothing) {
