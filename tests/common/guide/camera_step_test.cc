@@ -24,6 +24,7 @@ const Eigen::Isometry3d kTrue = camera_pose::LookingAtTheBoards({2.1, 0.4, 1.3})
 /// front of a camera that is not calibrated, at 60 Hz.
 class Holder {
  public:
+  virtual ~Holder() = default;
   Holder() {
     options.camera_file = "eye.json";
     options.camera_role = stream::DeviceRole::kLeftHand;
@@ -134,7 +135,7 @@ class Holder {
 };
 
 /// Somebody who stands on two boards and holds what is asked for, with both spheres, trembling.
-class Poser : public Holder {
+class Poser final : public Holder {
  public:
   Poser() {
     options.poses_height_m = 1.74;
