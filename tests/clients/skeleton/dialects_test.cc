@@ -217,7 +217,7 @@ TEST(Decoder, KnowsTheNumbersOfAzureKinectOscAndEndsAPersonWithTheLast) {
     for (int number = 0; number < 32; ++number) {
       Eigen::Vector3f p(9000, 9000, 9000);
       for (const auto& [known, joint] : kNumbers) {
-        const Eigen::Vector3d& p_K_m = Standing()[joint].p_K_m;  // x left, y up.
+        const Eigen::Vector3d p_K_m = Standing()[joint].p_K_m;  // x left, y up.
         if (known == number)
           p = (1e3 * Eigen::Vector3d(-p_K_m.x(), -p_K_m.y(), p_K_m.z())).cast<float>();
       }
