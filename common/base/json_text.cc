@@ -66,4 +66,11 @@ Result<nlohmann::ordered_json> ParseOrderedJson(const std::string& text,
   return Parse<nlohmann::ordered_json>(text, origin);
 }
 
+std::optional<std::string> SettingIn(const std::string& effective_config, const std::string& key) {
+  const auto json = nlohmann::json::parse(effective_config, nullptr, false);
+  const auto setting = nlohmann::json::json_pointer("/settings/" + key);
+  if (!json.contains(setting) || !json[setting].is_string()) return std::nullopt;
+  return json[setting].get<std::string>();
+}
+
 }  // namespace footing::text

@@ -97,8 +97,8 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
   Error NoTls() const {
     return UsageError(
         "will not listen on " + address_.Text() +
-        ": there is no TLS here, which connections beyond this host need; listen on unix:PATH, and "
-        "connect from other machines with ssh -L");
+        ": connections beyond this host need TLS, which this socket does not have; listen on "
+        "unix:PATH, and connect from other machines with ssh -L");
   }
 
   Result<void> PrepareTls() {

@@ -65,12 +65,9 @@ constexpr std::string_view kAzureJoints[] = {
 
 /// A name as kAzureJoints has it, of a number; none of anything else.
 std::optional<std::string_view> AzureJoint(std::string_view number) {
-  std::size_t index = 0;
-  const char* const end = number.data() + number.size();
-  const auto parsed = std::from_chars(number.data(), end, index);
-  if (parsed.ec != std::errc() || parsed.ptr != end || index >= std::size(kAzureJoints))
-    return std::nullopt;
-  return kAzureJoints[index];
+  const auto index = text::ToCount(number);
+  if (!index || *index >= std::size(kAzureJoints)) return std::nullopt;
+  return kAzureJoints[*index];
 }
 
 /// Confidences of Kinect v2's states, as OSCeleton-KinectSDK2 has them.

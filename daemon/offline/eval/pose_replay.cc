@@ -243,9 +243,7 @@ Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks,
   if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.data_folder);
   const mapping::InterfaceOptions interface = InterfaceOf(ticks);
   engine_files::Wish wish{.interface = interface.interface, .data_folder = options.data_folder};
-  const auto configured = std::find_if(ticks.begin(), ticks.end(),
-                                       [](const v1::Tick& tick) { return tick.has_config(); });
-  if (configured != ticks.end()) wish.gaits = gait_service::GaitsIn(configured->config());
+  wish.gaits = gait_service::GaitsIn(ConfigOf(ticks));
   const bool named_track = !options.track.empty();
   if (named_track) wish.track = options.track;
   const auto texts = engine_files::ReadTexts(wish);

@@ -300,10 +300,7 @@ Result<void> Translate(PoseFlags& flags) {
   settings.seed = settings.errors.seed;
   flags.options.rate_hz = settings.rate_hz;
   flags.options.lag_s = flags.lag_ms / 1000;
-  const auto mode = reconstruction::ModeNamed(flags.mode);
-  if (!mode) return mode.error();
-  flags.options.mode = *mode;
-  if (auto left = reconstruction::LeaveOut(flags.ablate, flags.options); !left) return left;
+  if (auto set = reconstruction::SetMode(flags.mode, flags.ablate, flags.options); !set) return set;
   return SetConstants(flags.constants, flags.options);
 }
 
@@ -341,8 +338,8 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
       {"regressed_prior_weight", &c.regressed_prior_weight},
       {"regressed_smooth_weight", &c.regressed_smooth_weight},
       {"paper.variance_share", &paper.variance_share},
-      {"paper.span", &paper.span},
-      {"paper.reach", &paper.reach},
+      {"paper.span", &paper.search.span},
+      {"paper.reach", &paper.search.reach},
       {"paper.hand_sd_m", &paper.hand_sd_m},
       {"paper.arm_sd_rad", &paper.arm_sd_rad},
       {"paper.foot_sd_m", &paper.foot_sd_m},

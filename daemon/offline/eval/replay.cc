@@ -11,14 +11,19 @@
 #include "daemon/sensor/service/hub.h"
 
 namespace footing::eval {
+
+v1::EffectiveConfig ConfigOf(const std::vector<v1::Tick>& ticks) {
+  const auto configured = std::find_if(ticks.begin(), ticks.end(),
+                                       [](const v1::Tick& tick) { return tick.has_config(); });
+  return configured == ticks.end() ? v1::EffectiveConfig() : configured->config();
+}
+
 namespace {
 
 /// Config of the recorded footingd, as far as its features depend on it.
-sensor::Config ConfigOf(const std::vector<v1::Tick>& ticks) {
+sensor::Config SensorConfigOf(const std::vector<v1::Tick>& ticks) {
   sensor::Config config;
-  const auto configured = std::find_if(ticks.begin(), ticks.end(),
-                                       [](const v1::Tick& tick) { return tick.has_config(); });
-  if (configured != ticks.end()) config.features = sensor::FeaturesIn(configured->config().json());
+  config.features = sensor::FeaturesIn(ConfigOf(ticks).json());
   return config;
 }
 
@@ -26,13 +31,13 @@ sensor::Config ConfigOf(const std::vector<v1::Tick>& ticks) {
 class HubReplay {
  public:
   explicit HubReplay(const std::vector<v1::Tick>& ticks)
-      : hub_(ConfigOf(ticks), {[](devices::DeviceHandle, const reports::OutputReport&) {},
-                               [](const sensor::LogLine&) {},
-                               [this] { return NowNs(); },
-                               [](devices::DeviceHandle, std::uint8_t, std::size_t) {},
-                               [this](const std::string& serial) { return StoredOf(serial); },
-                               {},
-                               {}}) {
+      : hub_(SensorConfigOf(ticks), {[](devices::DeviceHandle, const reports::OutputReport&) {},
+                                     [](const sensor::LogLine&) {},
+                                     [this] { return NowNs(); },
+                                     [](devices::DeviceHandle, std::uint8_t, std::size_t) {},
+                                     [this](const std::string& serial) { return StoredOf(serial); },
+                                     {},
+                                     {}}) {
     for (const v1::Tick& tick : ticks) {
       for (const v1::DeviceStatus& status : tick.status().devices()) {
         statuses_.emplace(status.device(), status);

@@ -5,6 +5,7 @@
 
 #include "common/base/result.h"
 #include "daemon/simulation/engine/engine.h"
+#include "footing/v1/character.pb.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::eval {
@@ -29,6 +30,9 @@ struct EngineReplay {
 /// InvalidData when the first recorded frame is too late for the engine's first inputs to be in the
 /// recording.
 Result<void> CheckFirstStep(std::uint64_t first_step);
+
+/// The first effective config of a server's ticks; an empty one where it published none.
+v1::EffectiveConfig ConfigOf(const std::vector<v1::Tick>& ticks);
 
 /// Feeds the raw reports of footingd's ticks to the same code that published them.
 FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/json_text.h"
 #include "common/net/address.h"
 #include "common/net/device_link.h"
 #include "common/net/metrics_endpoint.h"
@@ -211,10 +212,7 @@ std::string EffectiveConfig(const Config& config) {
 }
 
 std::string FeaturesIn(const std::string& effective_config) {
-  const auto json = nlohmann::json::parse(effective_config, nullptr, false);
-  const auto features = nlohmann::json::json_pointer("/settings/features");
-  if (!json.contains(features) || !json[features].is_string()) return Config().features;
-  return json[features].get<std::string>();
+  return text::SettingIn(effective_config, "features").value_or(Config().features);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "common/base/json_text.h"
 #include "common/model/model.h"
 #include "common/runtime/files.h"
 #include "common/stream/leg_turn.h"
@@ -115,10 +116,7 @@ std::string TableIn(const v1::EffectiveConfig& message, std::uint64_t interface_
 }
 
 std::string GaitsIn(const v1::EffectiveConfig& message) {
-  const ordered_json json = ordered_json::parse(message.json(), nullptr, false);
-  const auto gaits = ordered_json::json_pointer("/settings/gaits");
-  if (!json.contains(gaits) || !json[gaits].is_string()) return "best";
-  return json[gaits].get<std::string>();
+  return text::SettingIn(message.json(), "gaits").value_or("best");
 }
 
 }  // namespace footing::gait_service

@@ -66,10 +66,9 @@ Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common
   const auto body = MakeSubjectBody(first);
   if (!body) return body.error();
   reconstruction::Options options;
-  const auto mode = reconstruction::ModeNamed(config.mode);
-  if (!mode) return mode.error();
-  options.mode = *mode;
-  if (auto left = reconstruction::LeaveOut(config.leave_out, options); !left) return left.error();
+  if (auto set = reconstruction::SetMode(config.mode, config.leave_out, options); !set) {
+    return set.error();
+  }
   options.rate_hz = kRateHz;
   options.lag_s = 1e-3 * static_cast<double>(config.lag_ms);
   auto models = LoadPoseModels(common.data_folder, options.mode);
@@ -130,16 +129,14 @@ v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
 
 v1::CommandResult PoseLine::TakeMode(const v1::SetPoseMode& message) {
   Known next = known_.back();
-  const auto mode = reconstruction::ModeNamed(message.mode());
-  if (!mode) return Answer(false, "set_pose_mode: " + mode.error().message);
-  next.options.mode = *mode;
-  next.same_person = true;
   const std::vector<std::string> parts(message.left_out().begin(), message.left_out().end());
-  if (const auto left = reconstruction::LeaveOut(parts, next.options); !left) {
-    return Answer(false, "set_pose_mode: " + left.error().message);
+  if (const auto set = reconstruction::SetMode(message.mode(), parts, next.options); !set) {
+    return Answer(false, "set_pose_mode: " + set.error().message);
   }
+  next.same_person = true;
+  const reconstruction::Mode mode = next.options.mode;
   const v1::CommandResult answer = Next(std::move(next), "set_pose_mode");
-  if (answer.ok()) sensors_.TakeMode(*mode);
+  if (answer.ok()) sensors_.TakeMode(mode);
   return answer;
 }
 
@@ -450,12 +447,9 @@ Result<reconstruction::Options> OptionsFrom(const v1::AppliedInput& message,
                                             reconstruction::Options options) {
   const v1::PoseInput& pose = message.pose();
   if (pose.mode().empty()) return options;
-  const auto mode = reconstruction::ModeNamed(pose.mode());
-  if (!mode) return InvalidData("recorded input: " + mode.error().message);
-  options.mode = *mode;
   const std::vector<std::string> parts(pose.left_out().begin(), pose.left_out().end());
-  if (const auto left = reconstruction::LeaveOut(parts, options); !left) {
-    return InvalidData("recorded input: " + left.error().message);
+  if (const auto set = reconstruction::SetMode(pose.mode(), parts, options); !set) {
+    return InvalidData("recorded input: " + set.error().message);
   }
   return options;
 }

@@ -29,7 +29,7 @@ class PoseArms {
  public:
   static constexpr double kTimeoutS = 0.2;
 
-  /// Without a model there is no estimate from the fists, without a network none in paper mode.
+  /// Fists are estimated only with a model, in paper mode only with a network.
   explicit PoseArms(std::optional<arms::ArmModel> model,
                     std::optional<arm_network::ArmNetwork> network = std::nullopt);
 

@@ -373,8 +373,8 @@ std::string HandText(HandTrouble trouble, const std::string& side) {
       return "the " + side + " hand is not seen";
     case HandTrouble::kNoModel:
       return "the " + side +
-             " Wiimote is not followed: there is no arm.fmodel, or in paper mode no "
-             "arm_paper.fmodel (docs/models.md)";
+             " Wiimote is not followed: arm.fmodel, or in paper mode arm_paper.fmodel, is missing "
+             "(docs/models.md)";
     case HandTrouble::kNoGyroscope:
       return "the " + side + " Wiimote reports no rotation: is a MotionPlus in it?";
     case HandTrouble::kSilent:

@@ -151,7 +151,7 @@ void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& po
 }
 
 void PaperEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
-  estimator_.emplace(constants_.momentum, model_->subject, pose, step_s_);
+  estimator_.emplace(config_, model_->subject, pose, step_s_);
   if (model_->horizontal) horizontal_.emplace(*model_->horizontal, pose, step_s_);
   origin_m_ = origin_m;
 }
@@ -253,10 +253,7 @@ void InsoleMode::Report(const Measurement& now, Output& output) {
 namespace {
 
 pose::FibonacciOptions SearchOptions(const Options& options) {
-  pose::FibonacciOptions search;
-  search.evaluations = options.paper.evaluations;
-  search.span = options.paper.span;
-  search.reach = options.paper.reach;
+  pose::FibonacciOptions search = options.paper.search;
   search.frame_s = options.step_s();
   return search;
 }

@@ -90,14 +90,14 @@ class PaperEstimate {
  public:
   /// `model` must outlive it.
   PaperEstimate(const SubjectModel& model, const Options& options)
-      : model_(&model), constants_(options.paper), step_s_(options.step_s()) {}
+      : model_(&model), config_(options.paper.momentum), step_s_(options.step_s()) {}
 
   void Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m);
   Measurement Advance(const Inputs& inputs);
 
  private:
   const SubjectModel* model_;
-  PaperConstants constants_;
+  momentum::PaperConfig config_;
   double step_s_;
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   std::optional<momentum::PaperEstimator> estimator_;      ///< From Start on.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "common/base/text.h"
 #include "common/body/kinematics.h"
 #include "common/body/skeleton_points.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
@@ -104,12 +105,6 @@ constexpr int kPostureIterations = 1;
 
 int Options::lag_steps() const { return static_cast<int>(std::lround(lag_s * rate_hz)); }
 
-Result<Mode> ModeNamed(const std::string& name) {
-  if (name == "best") return Mode::kBest;
-  if (name == "paper") return Mode::kPaper;
-  return UsageError("unknown mode " + name + "; there are: best, paper");
-}
-
 std::string NameOf(Mode mode) { return mode == Mode::kPaper ? "paper" : "best"; }
 
 namespace {
@@ -132,9 +127,10 @@ Result<void> LeaveOut(const std::vector<std::string>& parts, Options& options) {
     const auto found = std::find_if(kParts.begin(), kParts.end(),
                                     [&](const Part& part) { return part.name == name; });
     if (found == kParts.end()) {
-      std::string names;
-      for (const Part& part : kParts) names += (names.empty() ? "" : ", ") + std::string(part.name);
-      return UsageError("unknown part " + name + " of the reconstruction; there are: " + names);
+      std::vector<std::string> names;
+      for (const Part& part : kParts) names.emplace_back(part.name);
+      return UsageError("unknown part " + name +
+                        " of the reconstruction; there are: " + text::Joined(names));
     }
     options.*found->used = false;
   }
@@ -147,6 +143,15 @@ std::vector<std::string> LeftOut(const Options& options) {
     if (!(options.*part.used)) names.emplace_back(part.name);
   }
   return names;
+}
+
+Result<void> SetMode(const std::string& name, const std::vector<std::string>& left_out,
+                     Options& options) {
+  if (name != "best" && name != "paper") {
+    return UsageError("unknown mode " + name + "; there are: best, paper");
+  }
+  options.mode = name == "paper" ? Mode::kPaper : Mode::kBest;
+  return LeaveOut(left_out, options);
 }
 
 Result<void> CheckOptions(const Options& options) {

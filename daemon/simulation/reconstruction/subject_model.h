@@ -162,10 +162,8 @@ struct BestConstants {
 /// terms of equation (6) have different units: each is divided by its standard deviation.
 struct PaperConstants {
   momentum::PaperConfig momentum;
-  double variance_share = 0.99;  ///< Share of the recorded poses that the components hold.
-  int evaluations = pose::FibonacciOptions{}.evaluations;
-  double span = pose::FibonacciOptions{}.span;
-  double reach = pose::FibonacciOptions{}.reach;
+  double variance_share = 0.99;   ///< Share of the recorded poses that the components hold.
+  pose::FibonacciOptions search;  ///< Its frame_s is set by the rate.
   double hand_sd_m = 0.016;
   double arm_sd_rad = 0.2;
   double foot_sd_m = 0.02;
@@ -192,13 +190,14 @@ struct Options {
   int lag_steps() const;
 };
 
-/// "best" or "paper"; a UsageError lists both.
-Result<Mode> ModeNamed(const std::string& name);
 std::string NameOf(Mode mode);
 /// Leaves exactly these parts out: angular_momentum, momentum, posture, basis, cleanup. A
 /// UsageError lists them.
 Result<void> LeaveOut(const std::vector<std::string>& parts, Options& options);
 std::vector<std::string> LeftOut(const Options& options);
+/// Both: the mode "best" or "paper", of which a UsageError lists both, and the parts to leave out.
+Result<void> SetMode(const std::string& name, const std::vector<std::string>& left_out,
+                     Options& options);
 
 /// UsageError that names an option out of range.
 Result<void> CheckOptions(const Options& options);

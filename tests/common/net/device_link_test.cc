@@ -179,7 +179,7 @@ TEST_F(DeviceSession, GoesBothWaysOverTlsWithTheToken) {
   ASSERT_TRUE(RunUntil([&] { return link.open(); })) << "it comes again";
   link.Stop("done");
   ASSERT_TRUE(RunUntil([&] { return ended_.size() == 2; }));
-  EXPECT_EQ(lost_, 1) << "its own end is no loss";
+  EXPECT_EQ(lost_, 1) << "its own end does not count as a loss";
 }
 
 TEST_F(DeviceSession, WithoutTheRightTokenItIsRefusedAsAnyClient) {

@@ -117,7 +117,7 @@ arms::ArmDirections Tracked(const ArmNetwork& network, int frames_a_reading) {
   }
   EXPECT_TRUE(left.valid);
   tracker.UseNetwork(false);
-  EXPECT_FALSE(tracker.Advance(reading_s)[0].valid) << "there is no regression";
+  EXPECT_FALSE(tracker.Advance(reading_s)[0].valid) << "the tracker has no regression";
   return left.directions;
 }
 
