@@ -2,7 +2,7 @@
 
 Usage: gait_tables.py BINARY_FOLDER [GAIT...]
 
-Nine minutes of one free processor, six of them for running. A mathematical library that rounds otherwise finds other
+Some twenty minutes of one free processor, six of them for running. A mathematical library that rounds otherwise finds other
 tables.
 """
 import os
@@ -14,7 +14,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLES = ROOT / "daemon/simulation/data/gaits"
 COMMAND_LINE = 1
-GAITS = ("step", "walk", "jump", "run")
+GAITS = ("step", "walk", "jump", "run", "paper/step", "paper/walk", "paper/jump", "paper/run")
 
 
 def written(binaries, gait):

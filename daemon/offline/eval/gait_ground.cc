@@ -166,6 +166,7 @@ Result<double> MeasureStepCostRatio(const biped::GaitCommand& command, const Gro
     const engine::EngineOutput& output = walker.Advance();
     forces.push_back({output.joint_efforts, output.push_W_n});
   }
+  if (walker.fell()) return 0;  // A character that is put back is no longer MuJoCo's alone.
   const std::uint64_t expected = engine->Output().state_hash;
 
   std::vector<double> ratios;

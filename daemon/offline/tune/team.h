@@ -18,7 +18,8 @@ namespace footing::tune {
 /// The paper names what it evaluates and gives no weights; these are ours. A trial that turns has
 /// no change of gait, so heading and latency never come together.
 struct Cost {
-  double failure = 0;  ///< A fall: 10 + 10 (1 - fraction survived), more than all else can be.
+  double failure = 0;  ///< A fall: 10 + 10 (1 - fraction survived), more than all else can be; the
+                       ///< paper's laws: 10 where a gait was not reached.
   double speed = 0;    ///< (speed error / 0.15 m/s)^2, at most 2.
   double flight = 0;   ///< Flight or swing: 0.25 (relative deviation / 10 %)^2, at most 1.
   double stance = 0;   ///< As flight.
@@ -118,8 +119,8 @@ class Team {
   const ranks::Ranks& ranks() const { return ranks_; }
 
   /// Makes the states in which the trials begin, under `table`, for each task as many. All tasks
-  /// are of one gait, the first at the tried set's own speed. `others` are the sets beside it, by
-  /// rising speeds, for trials that change their speed.
+  /// are of one gait or change into it, the first at the tried set's own speed. `others` are the
+  /// sets beside it, by rising speeds, for trials that change their speed.
   Result<void> Prepare(const std::vector<Task>& tasks, const gait::GainTable& table,
                        std::uint64_t seed, std::vector<gait::GainSet> others = {});
 

@@ -9,6 +9,7 @@
 #include "daemon/offline/analysis/leg_gap.h"
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/biped/track.h"
+#include "daemon/simulation/gait/transition.h"
 
 namespace footing::tune {
 namespace {
@@ -47,6 +48,54 @@ struct Shares {
 Shares SharesOf(Gait gait) {
   if (gait == Gait::kRun) return {0.15, 0.45, 0.6, 0.75};
   return {0, 0.5, 0.75, 1};
+}
+
+/// Trials under the paper's laws.
+constexpr double kPaperKickNs = 4;
+constexpr double kPaperChangeTrialS = 9;  // Leaving a run takes up to four seconds.
+constexpr Range kPaperChangesS{0.2, 1.7};
+
+/// Speeds that the paper's gaits are tuned for.
+Range PaperMps(Gait gait) {
+  switch (gait) {
+    case Gait::kWalk:
+      return {0.2, 1.4};
+    case Gait::kRun:
+      return {1.5, 4};
+    case Gait::kJump:
+      return {0, 1};
+    case Gait::kStep:
+    case Gait::kUnspecified:
+      return {0, 0};
+  }
+  return {0, 0};
+}
+
+Disturbance DrawPaper(const Task& task, noise::Random& random) {
+  constexpr Range kHeightsM{0.1, 0.35};
+  const auto drawn_of = [&random](const Range& range) {
+    return random.Uniform(range.min, range.max);
+  };
+  Disturbance drawn{.kick_s = random.Uniform(0.5, 1.2),
+                    .kick_ns = random.Uniform(0, kPaperKickNs),
+                    .kick_direction_rad = random.Uniform(-kPi, kPi),
+                    .height_m = drawn_of(kHeightsM)};
+  std::vector<Gait> gaits{task.into};
+  if (task.into == Gait::kUnspecified) {
+    if (random.Uniform() < 0.5) return drawn;
+    gaits.clear();
+    for (const Gait gait : stream::kGaits) {
+      if (gait != task.gait && gait::IsDirect(task.gait, gait)) gaits.push_back(gait);
+    }
+  }
+  const auto choice =
+      static_cast<std::size_t>(random.Uniform() * static_cast<double>(gaits.size()));
+  drawn.change.gait = gaits[std::min(choice, gaits.size() - 1)];
+  drawn.change.speed_mps = drawn_of(PaperMps(drawn.change.gait));
+  drawn.change.height_m = drawn_of(kHeightsM);
+  drawn.change_s = drawn_of(kPaperChangesS);
+  drawn.trial_s = kPaperChangeTrialS;
+  return drawn;
 }
 
 double TestedKickNs(Gait gait) { return gait == Gait::kRun ? 26 : 16; }
@@ -126,12 +175,20 @@ Result<void> CheckSpeeds(Gait gait, const std::vector<double>& speeds_mps) {
   return {};
 }
 
-std::vector<Task> TasksOf(Gait gait, const std::vector<double>& speeds_mps, std::size_t set) {
-  const Range tested = TestedMps(gait);
+std::vector<Task> TasksOf(Gait gait, const std::vector<double>& speeds_mps, std::size_t set,
+                          bool paper) {
+  const Range tested = paper ? PaperMps(gait) : TestedMps(gait);
   const double own_mps = speeds_mps[set];
-  std::vector<Task> tasks{{gait, own_mps}};
-  if (set == 0 && tested.min < own_mps) tasks.push_back({gait, tested.min});
-  if (set + 1 == speeds_mps.size() && tested.max > own_mps) tasks.push_back({gait, tested.max});
+  std::vector<Task> tasks{{gait, own_mps, paper}};
+  if (set == 0 && tested.min < own_mps) tasks.push_back({gait, tested.min, paper});
+  if (set + 1 == speeds_mps.size() && tested.max > own_mps) {
+    tasks.push_back({gait, tested.max, paper});
+  }
+  for (const Gait from : stream::kGaits) {
+    if (!paper || from == gait || !gait::IsDirect(from, gait)) continue;
+    const Range range = PaperMps(from);
+    tasks.push_back({from, (range.min + range.max) / 2, paper, gait});
+  }
   return tasks;
 }
 
@@ -158,6 +215,7 @@ Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engin
 
 Disturbance Draw(const Task& task, std::uint64_t seed) {
   noise::Random random(MixSeeds(seed, 1));
+  if (task.paper) return DrawPaper(task, random);
   const double tested_ns = TestedKickNs(task.gait);
   Disturbance drawn{.kick_s = random.Uniform(1.5, 2.2),
                     .kick_ns = random.Uniform(tested_ns, kBeyondTest * tested_ns),
@@ -181,7 +239,7 @@ Disturbance Draw(const Task& task, std::uint64_t seed) {
   }
   if (kind >= shares.pits) {
     drawn.change_s = random.Uniform(kChangesS.min, kChangesS.max);
-    drawn.walk_mps = random.Uniform(kWalksMps.min, kWalksMps.max);
+    drawn.change = {.gait = Gait::kWalk, .speed_mps = random.Uniform(kWalksMps.min, kWalksMps.max)};
     return drawn;
   }
   drawn.pit_m = random.Uniform(widths.min, widths.max);
@@ -221,14 +279,12 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
 
   engine.Restore(start);
   GaitMeter meter(task);
-  const int steps = StepsOf(kTrialS), kick_step = StepsOf(disturbance.kick_s);
+  const int steps = StepsOf(disturbance.trial_s), kick_step = StepsOf(disturbance.kick_s);
   const int change_step = disturbance.change_s > 0 ? StepsOf(disturbance.change_s) : steps;
   TrialResult result;
   for (int i = 0; i < steps; ++i) {
     if (i == kick_step) Kick(disturbance, inputs);
-    if (i == change_step) {
-      inputs.direct_command = {.gait = Gait::kWalk, .speed_mps = disturbance.walk_mps};
-    }
+    if (i == change_step) inputs.direct_command = disturbance.change;
     if (disturbance.pit_m > 0 && task.gait == Gait::kRun) {
       const double to_edge_m = near_m - engine.Output().p_WC_m.x();
       const bool jumps = to_edge_m < kJumpLeadS * task.speed_mps && to_edge_m > -disturbance.pit_m;
@@ -239,10 +295,12 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
       result.survived = static_cast<double>(i) / steps;
       break;
     }
-    const bool walks = engine.Output().gait.gait == Gait::kWalk;
     if (i < change_step) {
       meter.Add(engine.Output(), kStepS);
-    } else if (result.latency_s == 0 && (walks || i + 1 == steps)) {
+      continue;
+    }
+    result.reached = engine.Output().gait.gait == disturbance.change.gait;
+    if (result.latency_s == 0 && (result.reached || i + 1 == steps)) {
       result.latency_s = (i + 1 - change_step) * kStepS;
     }
   }

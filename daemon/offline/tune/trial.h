@@ -13,10 +13,14 @@
 /// Simulated trials of a gait, over which footing-tune searches for its gains.
 namespace footing::tune {
 
+inline constexpr double kTrialS = 5;
+
 /// Gait and speed that a set is tuned for.
 struct Task {
   stream::Gait gait = stream::Gait::kWalk;
   double speed_mps = 0;
+  bool paper = false;  ///< Under the paper's own laws: other disturbances.
+  stream::Gait into = stream::Gait::kUnspecified;  ///< The trial is a change to this gait.
 };
 
 /// Disturbances of a trial. Everything is drawn, and mixed so that no trial of footing-eval draws
@@ -29,8 +33,9 @@ struct Disturbance {
   double height_m = 0.2;
   double pit_m = 0;        ///< Width; 0: no pit.
   double pit_ahead_m = 0;  ///< From the start to the near edge.
-  double change_s = 0;     ///< From the start to the command to walk; 0: none.
-  double walk_mps = 0;     ///< Speed of that command.
+  double change_s = 0;     ///< From the start to the command of another gait; 0: none.
+  biped::GaitCommand change{};
+  double trial_s = kTrialS;
 };
 
 /// Disturbances as in the acceptance tests (tests/scenarios/biped_table.py). Half of the trials are
@@ -39,6 +44,9 @@ struct Disturbance {
 /// is to jump. Half of the jumps are as high as they are accepted, the others 0.1 m to that. A
 /// quarter of the runs are to walk, in place of some of each; a third of those that are pushed turn
 /// as well.
+///
+/// The paper's laws plan no pit: a push of up to 4 N s, and in half of the trials a change to
+/// another gait of Figure 9 with a command as `footing-eval transitions` draws it.
 Disturbance Draw(const Task& task, std::uint64_t seed);
 
 /// Whether the trial's turn is to be followed by the body: no large push disturbs it.
@@ -60,27 +68,28 @@ struct TrialResult {
   double height_m = 0.2;         ///< That was commanded, of a jump.
   double heading_error_rad = 0;  ///< Root mean square; 0 where it is not scored.
   double leg_gap_m = INFINITY;   ///< Least, between the legs; infinite where it is not scored.
-  double latency_s = 0;          ///< From the command to walk to walking, or to the end; 0: none.
+  double latency_s = 0;  ///< From the command of another gait to it, or to the end; 0: none.
+  bool reached = true;   ///< The gait commanded last is there at the end.
 };
-
-inline constexpr double kTrialS = 5;
 
 /// A usage error that names the limit when a speed is beyond the gait's, to which the engine would
 /// reduce it.
 Result<void> CheckSpeeds(stream::Gait gait, const std::vector<double>& speeds_mps);
 
 /// Tasks that a set of gains is tried at: its own speed and, as gains stay the same beyond the
-/// outermost sets, for these the slowest or the fastest speed of the acceptance tests.
-std::vector<Task> TasksOf(stream::Gait gait, const std::vector<double>& speeds_mps,
-                          std::size_t set);
+/// outermost sets, for these the slowest or the fastest speed of the acceptance tests. `paper`: and
+/// a change into it from each gait that Figure 9 has before it.
+std::vector<Task> TasksOf(stream::Gait gait, const std::vector<double>& speeds_mps, std::size_t set,
+                          bool paper = false);
 
 /// States in which trials begin: the gait settled at its speed under the table's gains, at moments
 /// of the cycle that `seed` draws. An error when it falls on the way.
 Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engine, const Task& task,
                                                        int count, std::uint64_t seed);
 
-/// One trial of kTrialS from `start`, under the gains that the engine uses. A pit needs an engine
-/// on its track. Of a trial that is to walk, all but the latency is measured before that command.
+/// One trial from `start`, under the gains that the engine uses. A pit needs an engine
+/// on its track. Of a trial that changes its gait, all but the latency is measured before that
+/// command.
 TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
                      const Disturbance& disturbance);
 

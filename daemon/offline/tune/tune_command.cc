@@ -46,7 +46,8 @@ class Tuning {
         gait_(stream::GaitNamed(options.gait)),
         team_(std::move(team)),
         table_(std::move(table)),
-        dimensions_(DimensionsOf(gait_, table_.At(gait_, 0).paper.laws > 0.5)) {}
+        paper_(table_.At(gait_, 0).paper.laws > 0.5),
+        dimensions_(DimensionsOf(gait_, paper_)) {}
 
   Result<void> Resume() {
     searches_.assign(options_.speeds_mps.size(),
@@ -130,7 +131,7 @@ class Tuning {
   Result<void> TuneSet(std::size_t index) {
     const Task task{gait_, options_.speeds_mps[index]};
     const std::uint64_t seed = MixSeeds(options_.seed, index);
-    const std::vector<Task> tasks = TasksOf(gait_, options_.speeds_mps, index);
+    const std::vector<Task> tasks = TasksOf(gait_, options_.speeds_mps, index, paper_);
     if (const auto prepared = team_.Prepare(tasks, table_, seed, Others(index)); !prepared) {
       return prepared;
     }
@@ -234,6 +235,7 @@ class Tuning {
   stream::Gait gait_;
   Team team_;
   gait::GainTable table_;
+  bool paper_;  ///< The table has the paper's own laws.
   std::vector<Dimension> dimensions_;
   std::vector<SearchState> searches_;
   std::vector<TunedSet> tuned_;

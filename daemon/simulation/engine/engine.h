@@ -39,7 +39,8 @@ inline constexpr const char* kPlainTrackFile = "tracks/plain.json";
 inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
                                        "gaits/jump.csv"};
 /// After those, the gaits as the gait paper prints them.
-inline constexpr const char* kPaperGainFile = "gaits/paper.csv";
+inline constexpr std::array kPaperGainFiles{"gaits/paper/step.csv", "gaits/paper/walk.csv",
+                                            "gaits/paper/run.csv", "gaits/paper/jump.csv"};
 static_assert(kGainFiles.size() == stream::kGaits.size(), "a table of gains for every gait");
 
 /// Settings of the engine.

@@ -189,21 +189,27 @@ struct AnticipationGains {
 /// The gaits as the paper prints them (paper.h). Nothing here acts while `laws` is 0.
 struct PaperGains {
   double laws = 0;  ///< 1: the paper's machines and laws in place of ours.
-  // Walking and stepping.
   double touchdown_length_m = 0.93;
-  double swing_length_m = 0.82;
-  double fall_extension_m = 0.02;
-  double rear_extension_m = 0.04;
+  double swing_length_m = 0.84;
+  double fall_extension_m = 0.005;
+  double rear_extension_m = 0.02;
   double extension_mps = 0.3;
+  double reach_mps = 0.3;                     ///< Growth of the swing leg in Fall, until contact.
   double walk_offset_rad = 0;                 ///< phi_o of equation (1), in pitch, ...
-  double walk_offset_side_rad = -0.058;       ///< ... and in roll, outwards.
-  double walk_gain_rad_per_mps = -0.31;       ///< k_W in pitch, ...
-  double walk_side_gain_rad_per_mps = -0.31;  ///< ... and in roll.
-  double pick_up_s = 0.1;                     ///< Double Support lasts no longer.
-  double rise_passed_m = 0;       ///< Walking: Rise ends when the foot is so far ahead, ...
-  double rise_height_m = 0.03;    ///< ... stepping: when it is so high; ...
-  double rise_sideways_mps = -1;  ///< ... and the hip goes towards its side at this speed.
-  // Running and jumping.
+  double walk_offset_side_rad = -0.04;        ///< ... and in roll, outwards.
+  double walk_gain_rad_per_mps = -0.38;       ///< k_W in pitch, ...
+  double walk_side_gain_rad_per_mps = -0.44;  ///< ... and in roll.
+  double pick_up_s = 0.05;                    ///< Double Support lasts no longer.
+  double rise_passed_m = 0.2;       ///< Walking: Rise ends when the foot is so far ahead, ...
+  double rise_height_m = 0.03;      ///< ... stepping: when it is so high; ...
+  double rise_sideways_mps = 0.02;  ///< ... or, stepping and: the hip goes its way so fast.
+  double step_below_mps = 0.4;      ///< A walk that is to stop steps below this speed.
+  double thrust_extension_m = 0.1;  ///< Growth of the support leg in a Fall that becomes a flight.
+};
+
+/// The same for running and jumping.
+struct PaperHopGains {
+  double run_side_gain_s = 0.09;       ///< -k_R of equation (2) in roll.
   double run_extension_m = 0.045;      ///< Beyond the touchdown length, in Extension.
   double jump_extension_share = 0.06;  ///< The same for each root of a metre of height.
   double leap_extension_m = 0.06;      ///< The same in the step of a run that becomes a jump.
@@ -226,6 +232,7 @@ struct Gains {
   CadenceGains cadence;
   AnticipationGains anticipation;
   PaperGains paper;
+  PaperHopGains paper_hop;
 };
 
 }  // namespace footing::gait

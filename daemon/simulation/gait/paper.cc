@@ -18,6 +18,8 @@ constexpr double kShortestSupportS = 0.02;
 constexpr double kShortestFallS = 0.05;
 /// Within this of its full length a leg carries no more, m.
 constexpr double kExtendedM = 0.004;
+/// A leg that reaches for the ground gets no longer, m.
+constexpr double kLongestReachM = 1.1;
 /// Angles of a leg are kept within this, rad.
 constexpr double kLargestAngleRad = 0.7;
 
@@ -88,7 +90,10 @@ Targets PaperWalkingTargets(const Context& context, const GaitMemory& memory) {
     case WalkingPhase::kFall:
       targets.legs[support] = Standing(
           context, support, length_m + Extension(context, memory, gains.fall_extension_m), 1);
-      targets.legs[other] = Swinging(context, memory, other, length_m);
+      // "The swing leg is extended to make contact with the ground."
+      targets.legs[other] =
+          Swinging(context, memory, other,
+                   std::min(length_m + gains.reach_mps * context.TimeIn(memory), kLongestReachM));
       break;
   }
   return targets;
@@ -108,7 +113,7 @@ WalkingCues SensePaperWalking(const Context& context, const GaitMemory& memory) 
   const bool rose = other.p_WF.z() - support.p_WF.z() > gains.rise_height_m &&
                     toward_mps > gains.rise_sideways_mps;
   const bool passed =
-      ToHeading(memory.heading_rad, other.p_WF - support.p_WF).x() > gains.rise_passed_m &&
+      ToHeading(memory.heading_rad, other.p_WF - support.p_WF).x() > gains.rise_passed_m ||
       toward_mps > gains.rise_sideways_mps;
   return {.double_support_over = (!steps && pulled_up) || time_s > gains.pick_up_s,
           .half_swing_over = steps ? rose : passed,
@@ -133,8 +138,19 @@ void KeepIdle(const Context& context, GaitMemory& memory) {
   memory.hop.idle_r_HF_B_m = context.body.R_WB.transpose() * (idle.p_WF - idle.p_WH);
 }
 
+/// "If the user commands walking, the controller is immediately changed from stepping to walking";
+/// the other way the walk first slows down.
+void ChangeOnGround(const Context& context, GaitMemory& memory) {
+  if (IsHopping(context.goal.gait)) return;
+  const bool stops = memory.gait == stream::Gait::kWalk && context.goal.gait == stream::Gait::kStep;
+  const double v_mps = ToHeading(memory.heading_rad, context.body.v_WC).x();
+  if (stops && std::max(v_mps, memory.speed.desired_mps) > context.gains.paper.step_below_mps)
+    return;
+  memory.gait = context.goal.gait;
+}
+
 Targets AdvancePaperWalking(const Context& context, GaitMemory& memory) {
-  if (!IsHopping(context.goal.gait)) memory.gait = context.goal.gait;
+  ChangeOnGround(context, memory);
   if (memory.transition.after_jump && context.goal.gait == stream::Gait::kRun) {
     memory.gait = stream::Gait::kWalk;
   }
@@ -144,6 +160,9 @@ Targets AdvancePaperWalking(const Context& context, GaitMemory& memory) {
   // "By extending the support leg during Fall."
   if (memory.walking == WalkingPhase::kFall && IsHopping(context.goal.gait)) {
     StartThrust(context, memory);
+    memory.hop.thrust_length_m = std::min(
+        context.body.legs[memory.support_leg].length_m + context.gains.paper.thrust_extension_m,
+        context.biped.leg_length_max_m - 0.02);
     KeepIdle(context, memory);
     BeginExtension(memory.hop);
     return {};
@@ -164,7 +183,9 @@ LegTarget Landing(const Context& context, const GaitMemory& memory, int leg, dou
   const Vector3d v_H = ToHeading(memory.heading_rad, context.body.v_WC);
   const double pitch_rad =
       PaperRunningAngle(memory.hop.support_time_s, gain_s, memory.speed.desired_mps, v_H.x());
-  double left_rad = PaperRunningAngle(memory.hop.support_time_s, gain_s, 0, v_H.y());
+  double left_rad =
+      PaperRunningAngle(memory.hop.support_time_s,
+                        jumping ? gain_s : -context.gains.paper_hop.run_side_gain_s, 0, v_H.y());
   if (!jumping) {  // The foot comes to be under the body, not under the hip.
     const double inward_m = context.biped.hip_half_spacing_m - gains.run_foot_spacing_m;
     left_rad -= biped::Side(leg) * inward_m / gains.touchdown_length_m;
@@ -206,8 +227,8 @@ LegTarget Pushing(const Context& context, const GaitMemory& memory, int leg) {
   target.axial.damping_ns_per_m =
       jumping ? gains.jump_leg_damping_ns_per_m : gains.run_leg_damping_ns_per_m;
   if (memory.transition.absorbing) {
-    target.axial.length_m += jumping ? -context.gains.paper.landing_shortening_m
-                                     : context.gains.paper.landing_extension_m;
+    target.axial.length_m += jumping ? -context.gains.paper_hop.landing_shortening_m
+                                     : context.gains.paper_hop.landing_extension_m;
     target.axial.stiffness_n_per_m =
         jumping ? landing.jump_landing_stiffness_n_per_m : landing.run_landing_stiffness_n_per_m;
     target.axial.damping_ns_per_m =
@@ -252,7 +273,7 @@ Targets PaperRunningTargets(const Context& context, const GaitMemory& memory) {
 
 /// "In Extension the stance leg is extended": by a constant, in jumps by the height asked for.
 double PaperThrustLength(const Context& context, const GaitMemory& memory) {
-  const PaperGains& gains = context.gains.paper;
+  const PaperHopGains& gains = context.gains.paper_hop;
   double extension_m = gains.run_extension_m;
   if (memory.gait == stream::Gait::kJump) {
     extension_m = gains.jump_extension_share * std::sqrt(context.goal.height_m);
@@ -292,7 +313,9 @@ Targets AdvancePaperRunning(const Context& context, GaitMemory& memory) {
   const RunningPhase next = Next(memory.running, SenseRunning(context, memory));
   if (next != memory.running) EnterPaper(next, context, memory);
   if (LandingDone(context, memory)) {
+    const bool ran = memory.gait == stream::Gait::kRun;
     LandIntoWalking(context, memory);
+    if (ran) memory.gait = stream::Gait::kWalk;  // Stepping begins when the walk has slowed down.
     memory.walking_step.extends_since_s = context.body.time_s;
     return {};
   }

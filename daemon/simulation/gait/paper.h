@@ -7,8 +7,8 @@
 /// Figures 5 and 6 with their changes on contact and movement, equations (1) and (2) as angles of
 /// the leg, constant lengths at touchdown and for thrust. No integrator, no plan for ground or
 /// pits, no lean, no bank. Servos, measures of a support, turns by steps and the landing between
-/// the gaits are shared with ours. PaperGains has the numbers; docs/gait.md says what the text of
-/// the paper leaves open.
+/// the gaits are shared with ours. PaperGains and PaperHopGains have the numbers; docs/gait.md says
+/// what the text of the paper leaves open.
 namespace footing::gait {
 
 /// One step of control under PaperGains::laws.

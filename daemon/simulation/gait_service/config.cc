@@ -152,16 +152,15 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
   texts.biped = std::move(*biped);
   texts.mapping = std::move(*mapping_table);
   texts.track = std::move(*track);
-  for (const char* name : engine::kGainFiles) {
+  if (const auto known = CheckGaits(wish.gaits); !known) return known.error();
+  std::vector<std::string> tables(engine::kGainFiles.begin(), engine::kGainFiles.end());
+  if (wish.gaits == "paper") {
+    tables.insert(tables.end(), engine::kPaperGainFiles.begin(), engine::kPaperGainFiles.end());
+  }
+  for (const std::string& name : tables) {
     auto gains = config::ReadDataFile(name, wish.data_folder);
     if (!gains) return gains.error();
     texts.gains.push_back({name, std::move(*gains)});
-  }
-  if (const auto known = CheckGaits(wish.gaits); !known) return known.error();
-  if (wish.gaits == "paper") {
-    auto gains = config::ReadDataFile(engine::kPaperGainFile, wish.data_folder);
-    if (!gains) return gains.error();
-    texts.gains.push_back({engine::kPaperGainFile, std::move(*gains)});
   }
   for (const std::string& path : wish.more_gains) {
     auto gains = config::ReadTextFile(path);

@@ -90,6 +90,15 @@ TEST(Objective, ChargesTwentyForAFallAtOnceAndTenForTheLatest) {
   EXPECT_DOUBLE_EQ(CostOf(kWalk, result).failure, 10 + 10 * 0.25);
 }
 
+TEST(Objective, ChargesThePapersGaitsForAChangeThatNeverCame) {
+  TrialResult result = AsWanted(kWalk);
+  result.reached = false;
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).failure, 0);
+  Task paper = kWalk;
+  paper.paper = true;
+  EXPECT_DOUBLE_EQ(CostOf(paper, result).failure, 10);
+}
+
 TEST(Objective, ChargesTheLatestFallMoreThanAllElseTogether) {
   TrialResult worst{.survived = 1,
                     .speed_error_mps = 9,

@@ -159,7 +159,9 @@ TEST(Trials, TimeAChangeToWalking) {
   ASSERT_TRUE(states.ok());
   const auto result = [&](double change_s) {
     return RunTrial(*engine, states->front(), run,
-                    {.kick_s = 9, .change_s = change_s, .walk_mps = 0.8});
+                    {.kick_s = 9,
+                     .change_s = change_s,
+                     .change = {.gait = stream::Gait::kWalk, .speed_mps = 0.8}});
   };
   const TrialResult walked = result(1);
   EXPECT_EQ(walked.survived, 1);
@@ -215,6 +217,27 @@ TEST(Tasks, OfTheOutermostSetsGoToTheEndsOfTheTests) {
   EXPECT_EQ(speeds(stream::Gait::kRun, runs, 2), (std::vector<double>{5, 6}));
   EXPECT_EQ(speeds(stream::Gait::kJump, {1}, 0), (std::vector<double>{1, 0, 2}));
   EXPECT_EQ(speeds(stream::Gait::kStep, {0}, 0), (std::vector<double>{0}));
+}
+
+TEST(Tasks, OfThePapersGaitsChangeIntoThemToo) {
+  std::set<stream::Gait> from;
+  for (const Task& task : TasksOf(stream::Gait::kWalk, {0.3, 1.2}, 1, /*paper=*/true)) {
+    if (task.gait != stream::Gait::kWalk) {
+      EXPECT_EQ(task.into, stream::Gait::kWalk);
+      from.insert(task.gait);
+      EXPECT_EQ(Draw(task, 1).change.gait, stream::Gait::kWalk);
+    }
+  }
+  EXPECT_EQ(from.size(), 3u);
+  int changes = 0;
+  const Task jump{stream::Gait::kJump, 0.5, /*paper=*/true};
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const Disturbance drawn = Draw(jump, seed);
+    if (drawn.change_s == 0) continue;
+    ++changes;
+    EXPECT_NE(drawn.change.gait, stream::Gait::kRun);  // Figure 9 has no such arrow.
+  }
+  EXPECT_NEAR(changes, 100, 26);
 }
 
 TEST(Disturbances, JumpsAreAsHighAsTheyAreAccepted) {

@@ -56,7 +56,7 @@ TEST(Engine, ReplayedForcesLeadBareStepsToTheSameHash) {
 /// `--gaits paper`: each gait at a speed between its slow and its fast set, pushed by 2 N s.
 TEST(PaperGaits, StepWalkRunAndJumpWithoutAFall) {
   EngineTexts texts = Texts();
-  texts.gains.push_back({kPaperGainFile, test::DataFile(kPaperGainFile)});
+  for (const char* name : kPaperGainFiles) texts.gains.push_back({name, test::DataFile(name)});
   for (const auto& command :
        {Command(stream::Gait::kStep, 0), Command(stream::Gait::kWalk, 0.9),
         Command(stream::Gait::kRun, 2.5), Command(stream::Gait::kJump, 0.5)}) {

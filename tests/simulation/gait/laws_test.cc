@@ -84,6 +84,7 @@ TEST(PaperWalking, ChangesItsStateOnContactAndMovement) {
   LawsScene scene;
   scene.memory.gait = scene.goal.gait = stream::Gait::kWalk;
   scene.gains.paper.pick_up_s = 1;
+  scene.gains.paper.rise_passed_m = 0;
   const auto after = [&scene](WalkingPhase phase, double time_s) {
     scene.memory.walking = phase;
     scene.memory.phase_start_s = scene.body.time_s - time_s;
@@ -120,6 +121,37 @@ TEST(PaperStepping, FallsOnceTheFootIsHighAndTheHipGoesItsWay) {
   scene.body.v_WB.y() = -0.1;  // Towards the right, swinging leg.
   AdvancePaper(scene.context(), scene.memory);
   EXPECT_EQ(scene.memory.walking, WalkingPhase::kFall);
+}
+
+TEST(PaperStepping, FollowsAWalkOnceThatIsSlow) {
+  LawsScene scene;
+  scene.memory.gait = stream::Gait::kWalk;
+  scene.goal.gait = stream::Gait::kStep;
+  scene.body.v_WC.x() = 1;
+  AdvancePaper(scene.context(), scene.memory);
+  EXPECT_EQ(scene.memory.gait, stream::Gait::kWalk);
+  scene.body.v_WC.x() = 0.9 * scene.gains.paper.step_below_mps;
+  AdvancePaper(scene.context(), scene.memory);
+  EXPECT_EQ(scene.memory.gait, stream::Gait::kStep);
+  scene.body.v_WC.x() = 1;
+  scene.goal.gait = stream::Gait::kWalk;  // "The controller is immediately changed."
+  AdvancePaper(scene.context(), scene.memory);
+  EXPECT_EQ(scene.memory.gait, stream::Gait::kWalk);
+}
+
+/// "The swing leg is extended to make contact with the ground."
+TEST(PaperWalking, TheSwingLegReachesForTheGroundInFall) {
+  LawsScene scene;
+  scene.memory.gait = scene.goal.gait = stream::Gait::kWalk;
+  scene.memory.walking = WalkingPhase::kFall;
+  const auto length_m = [&scene](double time_s) {
+    scene.memory.phase_start_s = scene.body.time_s - time_s;
+    return AdvancePaper(scene.context(), scene.memory).legs[1].r_HF_W_m.norm();
+  };
+  const gait::PaperGains& gains = scene.gains.paper;
+  EXPECT_NEAR(length_m(0), gains.touchdown_length_m, 1e-9);
+  EXPECT_NEAR(length_m(0.1), gains.touchdown_length_m + 0.1 * gains.reach_mps, 1e-9);
+  EXPECT_LE(length_m(5), 1.1 + 1e-9);
 }
 
 TEST(Jumping, RetractsTheSecondLegOnceTheFirstHasLeftTheGround) {

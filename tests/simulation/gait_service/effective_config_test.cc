@@ -29,13 +29,15 @@ TEST(EffectiveConfig, HasVersionSettingsGainsAndTheTableWithItsValues) {
 
 TEST(EffectiveConfig, NamesThePapersGaitsForAReplay) {
   const auto texts = *engine_files::ReadTexts({.gaits = "paper"});
-  ASSERT_EQ(texts.gains.back().origin, engine::kPaperGainFile);
+  ASSERT_EQ(texts.gains.back().origin, engine::kPaperGainFiles.back());
   Config config;
   EXPECT_EQ(GaitsIn(EffectiveConfig({}, config, texts, {}).Message()), "best");
   config.gaits = "paper";
   const auto message = EffectiveConfig({}, config, texts, {}).Message();
   EXPECT_EQ(GaitsIn(message), "paper");
-  EXPECT_TRUE(json::parse(message.json())["sha256"].contains(engine::kPaperGainFile));
+  for (const char* name : engine::kPaperGainFiles) {
+    EXPECT_TRUE(json::parse(message.json())["sha256"].contains(name)) << name;
+  }
   EXPECT_EQ(GaitsIn({}), "best");
   for (const char* torn : {R"({"settings":7})", R"({"settings":{"gaits":[]}})", "[1]", "{"}) {
     v1::EffectiveConfig config_of_a_file;
