@@ -10,7 +10,7 @@
 
 #include <boost/asio/io_context.hpp>
 
-#include "clients/skeleton/tracking/osc.h"
+#include "common/base/osc.h"
 #include "common/base/result.h"
 #include "common/net/address.h"
 

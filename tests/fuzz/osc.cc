@@ -1,4 +1,4 @@
-#include "clients/skeleton/tracking/osc.h"
+#include "common/base/osc.h"
 
 #include <cstdlib>
 #include <string>

@@ -8,7 +8,7 @@
 
 #include "clients/skeleton/tracking/dialects.h"
 #include "clients/skeleton/tracking/joint_set.h"
-#include "clients/skeleton/tracking/osc.h"
+#include "common/base/osc.h"
 
 namespace footing::skeleton {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "clients/skeleton/tracking/joint_set.h"
-#include "clients/skeleton/tracking/osc.h"
+#include "common/base/osc.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 

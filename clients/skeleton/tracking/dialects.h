@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "clients/skeleton/tracking/joint_set.h"
-#include "clients/skeleton/tracking/osc.h"
+#include "common/base/osc.h"
 
 /// OSC dialects of programs that send skeletons (docs/skeleton.md has each in bytes). Read from the
 /// sources of Sensebloom/OSCeleton, Zillode/OSCeleton-OpenNI, Zillode/OSCeleton-KinectSDK2,

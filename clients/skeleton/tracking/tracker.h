@@ -14,7 +14,7 @@
 
 #include "clients/skeleton/tracking/decoder.h"
 #include "clients/skeleton/tracking/joint_set.h"
-#include "clients/skeleton/tracking/osc.h"
+#include "common/base/osc.h"
 #include "clients/skeleton/tracking/person_gate.h"
 #include "common/base/result.h"
 #include "common/stream/hands.h"

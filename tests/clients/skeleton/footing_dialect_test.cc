@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "clients/skeleton/tracking/decoder.h"
-#include "clients/skeleton/tracking/osc.h"
+#include "common/base/osc.h"
 
 namespace footing::skeleton {
 namespace {
