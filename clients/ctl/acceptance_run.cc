@@ -169,6 +169,7 @@ Result<AcceptanceVerdict> RunAcceptance(Connection& session, const AcceptanceOpt
     if (rig.rig == options.rig && !rig.layout.preset.empty()) layout = rig.layout;
   }
   recording::WriterSettings settings;
+  settings.chunks.compress = true;
   settings.library = std::string("footing-ctl ") + cli::Version();
   settings.replace = options.replace;
   auto writer = recording::RecordingWriter::Create(options.out, settings);

@@ -247,14 +247,24 @@ class Walker {
 
   void VisitChunk(const RawRecord& record) {
     chunked_ = true;
-    const std::optional<Chunk> chunk = DecodeChunk(record.body);
+    const std::optional<Chunk> packed = DecodeChunk(record.body);
+    std::string own;
+    std::string& unpacked = visitor_.unpacked != nullptr && packed && !packed->compression.empty()
+                                ? visitor_.unpacked->emplace_back()
+                                : own;
+    const std::optional<Chunk> chunk = packed ? Unpack(*packed, unpacked) : std::nullopt;
     const std::string what = ProblemOf(chunk);
     if (!what.empty()) {
       ++end_.damaged_chunks;
       if (visitor_.damage) visitor_.damage();
       return Problem(record.offset, what);
     }
-    VisitRecords(chunk->records, static_cast<std::uint64_t>(chunk->records.data() - file_.data()));
+    if (visitor_.chunk) visitor_.chunk(*packed);
+    // A record of a compressed chunk has no place of its own in the file.
+    const bool is_packed = !packed->compression.empty();
+    VisitRecords(chunk->records,
+                 is_packed ? record.offset
+                           : static_cast<std::uint64_t>(chunk->records.data() - file_.data()));
   }
 
   void VisitDataEnd(const RawRecord& record) {
@@ -387,10 +397,16 @@ bool IsWhole(const Chunk& chunk) {
          (chunk.uncompressed_crc == 0 || chunk.uncompressed_crc == Crc32(0, chunk.records));
 }
 
-std::optional<Chunk> ChunkAt(std::string_view file, std::uint64_t offset) {
+/// The chunk of these bytes, unpacked.
+std::optional<Chunk> ReadChunk(std::string_view body, std::string& unpacked) {
+  std::optional<Chunk> chunk = DecodeChunk(body);
+  return chunk ? Unpack(*std::move(chunk), unpacked) : std::nullopt;
+}
+
+std::optional<Chunk> ChunkAt(std::string_view file, std::uint64_t offset, std::string& unpacked) {
   const std::optional<FoundRecord> record = RecordAt(file, offset);
   if (!record || record->opcode != Opcode::kChunk) return std::nullopt;
-  return DecodeChunk(record->body);
+  return ReadChunk(record->body, unpacked);
 }
 
 /// Calls `take` with every record; false when one does not fit, or `take` gives false.
@@ -477,11 +493,12 @@ bool TakeRecord(const FoundRecord& record, Summary& summary, ChunkIndex& index, 
   return !fresh || budget.Spend(kChannelEntryBytes);
 }
 
-/// The chunk's index entry; nothing when the chunk is damaged or compressed, or the budget is
-/// exceeded.
+/// The chunk's index entry; nothing when the chunk is damaged or of an unknown compression, or the
+/// budget is exceeded.
 std::optional<ChunkIndex> IndexOf(std::string_view body, std::uint64_t offset, Summary& summary,
                                   Budget& budget) {
-  const std::optional<Chunk> chunk = DecodeChunk(body);
+  std::string unpacked;
+  const std::optional<Chunk> chunk = ReadChunk(body, unpacked);
   if (!chunk || !IsWhole(*chunk) || !budget.Spend(kChunkEntryBytes)) return std::nullopt;
   ChunkIndex index;
   index.start_time_ns = chunk->start_time_ns;
@@ -505,9 +522,10 @@ void TakeMetadata(std::string_view body, std::uint64_t offset, Summary& summary,
 }  // namespace
 
 Result<void> CheckChunk(std::string_view file, const ChunkIndex& index) {
-  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset);
+  std::string unpacked;
+  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset, unpacked);
   if (!chunk || !IsWhole(*chunk)) {
-    return DamagedAt(index.chunk_offset, "a damaged chunk, or a compressed one");
+    return DamagedAt(index.chunk_offset, "a damaged chunk, or one of an unknown compression");
   }
   if (!RecordsAreWhole(*chunk)) return DamagedAt(index.chunk_offset, kDamagedRecord);
   return {};
@@ -515,7 +533,8 @@ Result<void> CheckChunk(std::string_view file, const ChunkIndex& index) {
 
 Result<void> VisitChunk(std::string_view file, const ChunkIndex& index,
                         const std::function<void(const Message&)>& handler) {
-  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset);
+  std::string unpacked;
+  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset, unpacked);
   // Checked ahead: of a damaged chunk nothing is delivered.
   if (!chunk || !chunk->compression.empty() || !RecordsAreWhole(*chunk)) {
     return DamagedAt(index.chunk_offset, kDamagedRecord);
@@ -531,7 +550,8 @@ Result<void> VisitChannel(std::string_view file, const ChunkIndex& index, std::u
                           const std::function<void(const Message&)>& handler) {
   const auto found = index.message_index_offsets.find(channel);
   if (found == index.message_index_offsets.end()) return {};
-  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset);
+  std::string unpacked;
+  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset, unpacked);
   const auto entries = chunk && chunk->compression.empty() && found->second != 0
                            ? IndexAt(file, found->second, channel, chunk->records)
                            : std::nullopt;
@@ -631,12 +651,12 @@ std::optional<std::uint64_t> Resync::NextChunk(std::uint64_t from) {
   for (std::size_t at = file_.find(kChunk, from); at != std::string_view::npos;
        at = file_.find(kChunk, at + 1)) {
     const auto record = RecordAt(file_, at);
-    const auto chunk = record ? DecodeChunk(record->body) : std::nullopt;
+    const auto packed = record ? DecodeChunk(record->body) : std::nullopt;
     // Without a CRC nothing distinguishes a chunk from other bytes.
-    if (!chunk || chunk->uncompressed_crc == 0 || chunk->records.empty() ||
-        chunk->uncompressed_size != chunk->records.size()) {
-      continue;
-    }
+    if (!packed || packed->uncompressed_crc == 0 || packed->records.empty()) continue;
+    std::string unpacked;
+    const auto chunk = Unpack(*packed, unpacked);
+    if (!chunk || chunk->uncompressed_size != chunk->records.size()) continue;
     if (chunk->records.size() > budget_) return std::nullopt;
     budget_ -= chunk->records.size();
     if (ProblemOf(chunk).empty()) return at;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <map>
@@ -23,6 +24,11 @@ struct Visitor {
   std::function<void(const Attachment&)> attachment;
   std::function<void(const Metadata&)> metadata;
   std::function<void()> damage;  ///< Something is left out here, by its CRC or its form.
+  /// Called before a whole chunk's records, as the file has it: perhaps compressed.
+  std::function<void(const Chunk&)> chunk = {};
+  /// Keeps what was unpacked of compressed chunks, so that the bytes of messages stay valid as long
+  /// as it; null: they are valid until the call that shows them returns.
+  std::deque<std::string>* unpacked = nullptr;
 };
 
 /// Behaviour of a walk at damage.
@@ -66,11 +72,12 @@ Result<Summary> ReadSummary(std::string_view file,
 // Reading a file from any place. What is not read is not touched.
 
 /// Checks one chunk: its CRC, and that every record in it is complete. InvalidData with the byte
-/// offset when it is damaged or compressed.
+/// offset when it is damaged or of an unknown compression.
 Result<void> CheckChunk(std::string_view file, const ChunkIndex& index);
 
 /// Visits the messages of one chunk that CheckChunk accepts, in its order; its CRC is not checked
-/// again. InvalidData with the byte offset, and no message, when its records are damaged.
+/// again. InvalidData with the byte offset, and no message, when its records are damaged. The bytes
+/// of a message are valid until the handler returns.
 Result<void> VisitChunk(std::string_view file, const ChunkIndex& index,
                         const std::function<void(const Message&)>& handler);
 

@@ -4,6 +4,9 @@
 #include <optional>
 
 #include <zlib.h>
+#include <zstd.h>
+
+#include "common/base/result.h"
 
 namespace footing::mcap {
 
@@ -355,6 +358,33 @@ std::optional<Footer> DecodeFooter(std::string_view body) {
 std::uint32_t Crc32(std::uint32_t so_far, std::string_view bytes) {
   return static_cast<std::uint32_t>(
       crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+std::optional<Chunk> Unpack(Chunk chunk, std::string& unpacked) {
+  if (chunk.compression != kZstd) return chunk;
+  // A frame that states another size is refused before memory is taken by what the chunk says.
+  const std::uint64_t size = chunk.uncompressed_size;
+  if (size > kMostUnpackedBytes ||
+      ZSTD_getFrameContentSize(chunk.records.data(), chunk.records.size()) != size) {
+    return std::nullopt;
+  }
+  unpacked.resize(size);
+  const std::size_t made =
+      ZSTD_decompress(unpacked.data(), size, chunk.records.data(), chunk.records.size());
+  if (ZSTD_isError(made) != 0 || made != size) return std::nullopt;
+  chunk.records = unpacked;
+  chunk.compression.clear();
+  return chunk;
+}
+
+std::string Compress(std::string_view records) {
+  constexpr int kLevel = 1;  // A higher one costs more time than it saves bytes.
+  std::string packed(ZSTD_compressBound(records.size()), '\0');
+  const std::size_t size =
+      ZSTD_compress(packed.data(), packed.size(), records.data(), records.size(), kLevel);
+  FOOTING_CHECK(ZSTD_isError(size) == 0);
+  packed.resize(size);
+  return packed;
 }
 
 std::string ProblemOf(const std::optional<Chunk>& chunk) {

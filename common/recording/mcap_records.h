@@ -104,9 +104,14 @@ struct Chunk {
   std::uint64_t end_time_ns = 0;
   std::uint64_t uncompressed_size = 0;
   std::uint32_t uncompressed_crc = 0;  ///< 0: not given.
-  std::string compression;             ///< Empty: none, the only one written and read here.
+  std::string compression;             ///< Empty: none; kZstd; others are not read here.
   std::string_view records;            ///< Borrowed.
 };
+
+/// Compression of a chunk by zstd, as one frame.
+inline constexpr std::string_view kZstd = "zstd";
+/// A chunk that would take more bytes unpacked is damaged.
+inline constexpr std::uint64_t kMostUnpackedBytes = std::uint64_t{256} << 20;
 
 /// Where the messages of one channel lie within the records of the chunk before it.
 struct MessageIndex {
@@ -232,6 +237,12 @@ std::optional<Channel> DecodeChannel(std::string_view body);
 std::optional<Message> DecodeMessage(std::string_view body);
 /// `cut`: a chunk at the file's end may hold fewer records than it says.
 std::optional<Chunk> DecodeChunk(std::string_view body, bool cut = false);
+/// The chunk as it was before it was compressed by zstd: its records are put into `unpacked`, which
+/// it borrows, and it has no compression. Any other chunk is as it was. Nothing where its bytes are
+/// damaged or do not have the size that it says.
+std::optional<Chunk> Unpack(Chunk chunk, std::string& unpacked);
+/// The records compressed by zstd.
+std::string Compress(std::string_view records);
 std::optional<MessageIndex> DecodeMessageIndex(std::string_view body);
 std::optional<ChunkIndex> DecodeChunkIndex(std::string_view body);
 /// Nothing also when its CRC is wrong.

@@ -101,11 +101,15 @@ void Writer::Add(const Metadata& metadata) {
 void Writer::FlushChunk() {
   if (chunk_messages_ == 0) return;
   const std::string records = std::exchange(chunk_, {});
-  ChunkIndex index{chunk_start_ns_, chunk_end_ns_, offset_, 0, {}, 0, "",
-                   records.size(),  records.size()};
+  const std::string packed = options_.compress ? Compress(records) : std::string();
+  const std::string_view stored = options_.compress ? std::string_view(packed) : records;
+  const std::string compression(options_.compress ? kZstd : "");
+  ChunkIndex index{chunk_start_ns_, chunk_end_ns_, offset_,       0, {}, 0,
+                   compression,     stored.size(), records.size()};
   std::string bytes;
-  Encode(Chunk{chunk_start_ns_, chunk_end_ns_, records.size(), Crc32(0, records), "", records},
-         bytes);
+  Encode(
+      Chunk{chunk_start_ns_, chunk_end_ns_, records.size(), Crc32(0, records), compression, stored},
+      bytes);
   index.chunk_length = bytes.size();
   for (const auto& [channel, messages] : chunk_index_) {
     index.message_index_offsets[channel] = offset_ + bytes.size();

@@ -13,10 +13,11 @@ namespace footing::mcap {
 struct WriterOptions {
   std::uint64_t chunk_bytes = 768 * 1024;
   std::uint64_t chunk_span_ns = 1'000'000'000;  ///< Log time of one chunk.
+  bool compress = false;                        ///< By zstd, chunk by chunk.
 };
 
-/// Makes the bytes of an MCAP file: chunked, not compressed, indexed, with all CRCs. The same calls
-/// give the same bytes. Whoever owns the file fetches them with Take() and writes them down.
+/// Makes the bytes of an MCAP file: chunked, indexed, with all CRCs. The same calls give the same
+/// bytes. Whoever owns the file fetches them with Take() and writes them down.
 class Writer {
  public:
   Writer(const Header& header, WriterOptions options);
@@ -34,6 +35,9 @@ class Writer {
   void Add(const Message& message);
   void Add(const Attachment& attachment);
   void Add(const Metadata& metadata);
+
+  /// Whether the chunks from the one begun on are compressed.
+  void SetCompress(bool compress) { options_.compress = compress; }
 
   /// Closes the chunk begun, if it holds a message.
   void FlushChunk();

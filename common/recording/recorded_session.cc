@@ -135,6 +135,7 @@ Result<RecordedSession> RecordedSession::Open(const std::string& path) {
   RecordedSession session(path, std::move(*file));
   TickCollector collector(session.servers_);
   mcap::Visitor visitor;
+  visitor.unpacked = &session.unpacked_;
   visitor.channel = [&](const mcap::Channel& channel) { collector.OnChannel(channel); };
   visitor.message = [&](const mcap::Message& message) { collector.OnMessage(message); };
   visitor.metadata = [&](const mcap::Metadata& metadata) {

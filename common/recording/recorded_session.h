@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,7 @@ class RecordedSession {
 
   std::string path_;
   MappedFile file_;
+  std::deque<std::string> unpacked_;  ///< Records of compressed chunks, which ticks borrow.
   std::vector<RecordedServer> servers_;
   std::vector<mcap::Metadata> metadata_;
 };

@@ -30,6 +30,9 @@ class Copier {
       writer_.CopyChannel(channel);
     };
     visitor.damage = [this] { ++damage_; };
+    visitor.chunk = [this](const mcap::Chunk& chunk) {
+      writer_.SetCompress(chunk.compression == mcap::kZstd);
+    };
     visitor.message = [this](const mcap::Message& message) {
       ++report_.messages;
       NoteMissing(message);

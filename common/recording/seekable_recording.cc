@@ -239,13 +239,20 @@ std::optional<PlacedTick> SeekableRecording::LastOf(std::size_t server, const st
   const auto id = servers_[server].channels.find(channel);
   if (id == servers_[server].channels.end()) return std::nullopt;
   std::optional<mcap::Message> last, next;
+  std::string last_data, next_data;  // A message is valid only while it is shown.
   const auto time_of = [this](const std::optional<mcap::Message>& message) {
     return message ? TimeOf(*message) : kNever;
   };
   const auto take = [&](const mcap::Message& message) {
     const std::int64_t time_ns = TimeOf(message);
-    if (time_ns <= at_ns && (!last || time_ns > time_of(last))) last = message;
-    if (time_ns > at_ns && time_ns < time_of(next)) next = message;
+    if (time_ns <= at_ns && (!last || time_ns > time_of(last))) {
+      last = message;
+      last_data = message.data;
+    }
+    if (time_ns > at_ns && time_ns < time_of(next)) {
+      next = message;
+      next_data = message.data;
+    }
   };
   const std::int64_t offset_ns = servers_[server].offset_ns;
   for (auto chunk = summary_.chunks.rbegin(); chunk != summary_.chunks.rend(); ++chunk) {
@@ -265,7 +272,9 @@ std::optional<PlacedTick> SeekableRecording::LastOf(std::size_t server, const st
   const std::optional<mcap::Message>& found = last ? last : next;
   if (!found || (!last && !or_next)) return std::nullopt;
   PlacedTick placed = Place(*found);
-  if (!Parse(channels_.at(id->second).field, found->data, placed.tick)) return std::nullopt;
+  if (!Parse(channels_.at(id->second).field, last ? last_data : next_data, placed.tick)) {
+    return std::nullopt;
+  }
   return placed;
 }
 

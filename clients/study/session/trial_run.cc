@@ -457,6 +457,7 @@ Result<std::unique_ptr<TrialRecorder>> TrialRecorder::Begin(Console& console,
                                                             const Options& options,
                                                             const mcap::TextMap& marks) {
   recording::WriterSettings settings;
+  settings.chunks.compress = true;
   settings.library = "footing-study " + options.version;
   auto writer = recording::RecordingWriter::Create(options.path, settings);
   if (!writer) return writer.error();

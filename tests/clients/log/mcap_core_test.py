@@ -19,9 +19,11 @@ def skip(why):
 
 def install(reader, work):
     work.mkdir(parents=True, exist_ok=True)
+    lock = work / "package-lock.json"
+    is_same = lock.is_file() and lock.read_bytes() == (reader / lock.name).read_bytes()
     for name in ("package.json", "package-lock.json"):
         shutil.copy(reader / name, work / name)
-    if (work / "node_modules" / ".package-lock.json").is_file():  # npm writes it when all is in place.
+    if is_same and (work / "node_modules" / ".package-lock.json").is_file():  # npm writes it when all is in place.
         return
     try:
         done = subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=work, check=False,
@@ -36,8 +38,14 @@ def main(writer, reader, work):
     if shutil.which("node") is None or shutil.which("npm") is None:
         skip("node or npm is not installed")
     install(reader, work)
-    recording = work / "sample.mcap"
-    subprocess.run([writer, recording], check=True)
+    recordings = work / "sample.mcap", work / "compressed.mcap"
+    subprocess.run([writer, recordings[0]], check=True)
+    subprocess.run([writer, recordings[1], "zstd"], check=True)
+    for recording in recordings:
+        check(recording, reader, work)
+
+
+def check(recording, reader, work):
     done = subprocess.run(["node", reader / "read.mjs", recording], cwd=work, check=False,
                           capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr

@@ -26,8 +26,10 @@ v1::Tick SampleTick(int k, bool simulated) {
 
 }  // namespace
 
-void WriteSampleRecording(const std::string& path, bool simulated) {
-  auto writer = recording::RecordingWriter::Create(path, {"footing-log test", true, {}});
+void WriteSampleRecording(const std::string& path, bool simulated, bool compress) {
+  recording::WriterSettings settings{"footing-log test", true, {}};
+  settings.chunks.compress = compress;
+  auto writer = recording::RecordingWriter::Create(path, settings);
   FOOTING_CHECK(writer.ok());
   recording::StreamRecorder recorder(*writer, "unix:/made",
                                      [](const std::string& id) { return id; });

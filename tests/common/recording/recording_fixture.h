@@ -21,8 +21,11 @@ class Recording : public testing::Test {
   std::string Path(const std::string& name) const { return folder_.Path(name); }
 
   /// Sample k of device 3, received at k * 10 ms, on /footingd/motion, one a tick.
-  void WriteMotion(const std::string& path, int ticks, bool of_a_server = false) {
-    Result<RecordingWriter> writer = RecordingWriter::Create(path, {"test", false, {}});
+  void WriteMotion(const std::string& path, int ticks, bool of_a_server = false,
+                   bool compress = false) {
+    WriterSettings settings{"test", false, {}};
+    settings.chunks.compress = compress;
+    Result<RecordingWriter> writer = RecordingWriter::Create(path, settings);
     ASSERT_TRUE(writer.ok()) << writer.error().message;
     const mcap::TextMap session{{"server", "footingd"}, {"epoch", "7"}};
     if (of_a_server) {

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "common/recording/mcap_reader.h"
+#include "common/recording/recorded_session.h"
+#include "common/recording/seekable_recording.h"
 #include "tests/common/recording/recording_fixture.h"
 
 namespace footing::recording {
@@ -100,6 +103,97 @@ TEST_F(Recording, RepairRefusesWhatIsNoRecordingAndItsOwnInput) {
   const auto same = Repair(Path("a.mcap"), Path("a.mcap"), "test", true);
   ASSERT_FALSE(same.ok());
   EXPECT_EQ(same.error().kind, ErrorKind::kUsage);
+}
+
+/// Log times and numbers of the ticks, and what each says.
+std::vector<std::string> TicksOf(const std::vector<playback::PlacedTick>& ticks) {
+  std::vector<std::string> texts;
+  for (const playback::PlacedTick& tick : ticks) texts.push_back(tick.tick.DebugString());
+  return texts;
+}
+
+TEST_F(Recording, ACompressedOneHasTheSameMessagesForEveryReader) {
+  WriteMotion(Path("plain.mcap"), 1000, true);
+  WriteMotion(Path("packed.mcap"), 1000, true, /*compress=*/true);
+  const std::string plain = Bytes(Path("plain.mcap")), packed = Bytes(Path("packed.mcap"));
+  EXPECT_LT(packed.size(), 6 * plain.size() / 10);
+  EXPECT_EQ(Read(packed), Read(plain));
+  const auto summary = mcap::ReadSummary(packed);
+  ASSERT_TRUE(summary.ok()) << summary.error().message;
+  for (const mcap::ChunkIndex& chunk : summary->chunks) {
+    EXPECT_EQ(chunk.compression, "zstd");
+    EXPECT_LT(chunk.compressed_size, chunk.uncompressed_size);
+  }
+  const auto session = RecordedSession::Open(Path("packed.mcap"));
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  const std::vector<RecordedTick>& ticks = session->servers().at(0).ticks;
+  ASSERT_EQ(ticks.size(), 1000u);
+  for (std::size_t i = 0; i < ticks.size(); i += 99) {
+    const auto tick = ReadTick(ticks[i]);
+    ASSERT_TRUE(tick.ok()) << tick.error().message;
+    EXPECT_EQ(tick->motion().samples(0).specific_force_mps2().x(), 0.25 * double(i));
+  }
+  std::vector<std::string> seen[2];
+  for (const bool is_packed : {false, true}) {
+    auto opened = playback::SeekableRecording::Open(Path(is_packed ? "packed.mcap" : "plain.mcap"),
+                                                    {"footingd"}, {"motion"});
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+    EXPECT_EQ(opened->Limits(), "");
+    seen[is_packed] = TicksOf(opened->Ticks(2'000'000'000, 4'000'000'000));
+    const auto last = opened->LastOf(0, "motion", 3'333'000'000, false);
+    ASSERT_TRUE(last.has_value());
+    EXPECT_EQ(last->tick.motion().samples(0).received_ns(), 3'330'000'000);
+  }
+  EXPECT_EQ(seen[0].size(), 200u);
+  EXPECT_EQ(seen[1], seen[0]);
+}
+
+TEST_F(Recording, RepairOfACutCompressedFileKeepsItsWholeChunks) {
+  WriteMotion(Path("whole.mcap"), 450, true, /*compress=*/true);
+  const std::string whole = Bytes(Path("whole.mcap"));
+  const auto summary = mcap::ReadSummary(whole);
+  ASSERT_TRUE(summary.ok()) << summary.error().message;
+  ASSERT_GT(summary->chunks.size(), 3u);
+  for (std::size_t cut = 8; cut < whole.size(); cut += 331) {
+    Save(Path("cut.mcap"), whole.substr(0, cut));
+    const auto report = Repair(Path("cut.mcap"), Path("repaired.mcap"), "test", true);
+    ASSERT_TRUE(report.ok()) << report.error().message;
+    std::size_t chunks = 0;
+    for (const mcap::ChunkIndex& chunk : summary->chunks) {
+      chunks += chunk.chunk_offset + chunk.chunk_length <= cut ? 1 : 0;
+    }
+    // A chunk has a second: 101 ticks of 10 ms, the last one fewer.
+    const std::string repaired = Bytes(Path("repaired.mcap"));
+    ASSERT_EQ(Read(repaired).size(), std::min<std::size_t>(101 * chunks, 450)) << cut;
+    const auto again = mcap::ReadSummary(repaired);
+    ASSERT_TRUE(again.ok()) << again.error().message;
+    if (chunks > 0) {
+      EXPECT_EQ(again->chunks[0].compression, "zstd");
+    }
+  }
+}
+
+TEST_F(Recording, ADamagedCompressedChunkIsLeftOutAndTheRestIsRead) {
+  WriteMotion(Path("whole.mcap"), 450, true, /*compress=*/true);
+  const std::string whole = Bytes(Path("whole.mcap"));
+  const auto summary = mcap::ReadSummary(whole);
+  ASSERT_TRUE(summary.ok()) << summary.error().message;
+  const mcap::ChunkIndex& second = summary->chunks.at(1);
+  const std::size_t at = second.chunk_offset + second.chunk_length;
+  for (std::size_t behind = 1; behind < second.compressed_size; behind += 7) {
+    std::string bytes = whole;
+    bytes[at - behind] = static_cast<char>(bytes[at - behind] ^ 0x55);
+    Save(Path("damaged.mcap"), bytes);
+    const auto report = Repair(Path("damaged.mcap"), Path("repaired.mcap"), "test", true);
+    ASSERT_TRUE(report.ok()) << report.error().message;
+    EXPECT_EQ(report->found.damaged_chunks, 1u) << behind;
+    EXPECT_EQ(report->missing_ticks, 101u);
+  }
+  // A chunk that claims to be larger than a file may be is refused, whatever memory there is.
+  mcap::Chunk chunk{0, 0, std::uint64_t{1} << 40, 1, "zstd", whole};
+  std::string unpacked;
+  EXPECT_FALSE(mcap::Unpack(chunk, unpacked).has_value());
+  EXPECT_TRUE(unpacked.empty());
 }
 
 }  // namespace

@@ -5,6 +5,9 @@ import {open, readFile} from "node:fs/promises";
 
 const require = createRequire(process.cwd() + "/");
 const {McapIndexedReader, McapStreamReader} = require("@mcap/core");
+const {decompress} = require("fzstd");
+
+const decompressHandlers = {zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size)))};
 
 async function readIndexed(path) {
   const file = await open(path);
@@ -16,7 +19,7 @@ async function readIndexed(path) {
       return bytes;
     },
   };
-  const reader = await McapIndexedReader.Initialize({readable});
+  const reader = await McapIndexedReader.Initialize({readable, decompressHandlers});
   const counts = {};
   for await (const message of reader.readMessages()) {
     const topic = reader.channelsById.get(message.channelId).topic;
@@ -32,7 +35,7 @@ async function readIndexed(path) {
 }
 
 async function readStream(path) {
-  const reader = new McapStreamReader({validateCrcs: true});
+  const reader = new McapStreamReader({validateCrcs: true, decompressHandlers});
   const bytes = await readFile(path);
   const counts = {};
   const topics = new Map();
