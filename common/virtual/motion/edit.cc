@@ -13,6 +13,7 @@
 #include "common/base/result.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
+#include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/virtual/motion/table.h"
 
@@ -242,6 +243,80 @@ Motion Mirrored(const Motion& motion) {
       SetJointRotation(out.skeleton.joint(i), S * JointRotation(other, from) * S, q);
     }
     out.q.col(frame) = q;
+  }
+  return out;
+}
+
+Result<std::vector<std::string>> HumanBones(const body::Skeleton& skeleton) {
+  const auto found = body::FindLandmarks(skeleton);
+  if (!found) return found.error();
+  const body::Landmarks& landmarks = *found;
+  using body::Landmark;
+  std::vector<std::string> names(skeleton.joints.size());
+  const auto set = [&](int joint, const std::string& name) {
+    if (joint >= 0 && names[Index(joint)].empty()) names[Index(joint)] = name;
+  };
+  set(landmarks[Landmark::kHips], "Hips");
+  set(landmarks[Landmark::kNeck], "Neck");
+  set(landmarks[Landmark::kHead], "Head");
+  constexpr std::pair<Landmark, const char*> kOfSide[] = {
+      {Landmark::kLeftClavicle, "Shoulder"}, {Landmark::kLeftShoulder, "UpperArm"},
+      {Landmark::kLeftElbow, "LowerArm"},    {Landmark::kLeftWrist, "Hand"},
+      {Landmark::kLeftHip, "UpperLeg"},      {Landmark::kLeftKnee, "LowerLeg"},
+      {Landmark::kLeftAnkle, "Foot"},        {Landmark::kLeftToe, "Toes"}};
+  for (const int side : {0, 1}) {
+    for (const auto& [landmark, name] : kOfSide) {
+      set(landmarks[body::OfSide(landmark, side)],
+          (side == 0 ? "Left" : "Right") + std::string(name));
+    }
+  }
+  // The trunk from below: the first joint, the second one, and the uppermost.
+  std::vector<int> trunk;
+  for (int joint = skeleton.joint(landmarks[Landmark::kNeck]).parent;
+       joint >= 0 && joint != landmarks[Landmark::kHips]; joint = skeleton.joint(joint).parent) {
+    trunk.insert(trunk.begin(), joint);
+  }
+  if (!trunk.empty()) set(trunk.front(), "Spine");
+  if (trunk.size() > 2) set(trunk.back(), "UpperChest");
+  if (trunk.size() > 1) set(trunk[1], "Chest");
+  return names;
+}
+
+Result<Motion> Humanoid(const Motion& motion) {
+  const body::Skeleton& from = motion.skeleton;
+  const auto landmarks = body::FindLandmarks(from);
+  if (!landmarks) return landmarks.error();
+  const std::vector<std::string> names = HumanBones(from).value();
+  body::Kinematics rest(from);
+  body::ComputeKinematics(from, body::TPose(from, *landmarks), rest);
+  std::vector<body::Joint> joints;
+  for (int i = 0; i < from.size(); ++i) {
+    body::Joint joint;
+    joint.name = names[Index(i)].empty() ? from.joint(i).name : names[Index(i)];
+    joint.parent = from.joint(i).parent;
+    if (i > 0) joint.offset_m = rest.p_WJ[Index(i)] - rest.p_WJ[Index(joint.parent)];
+    if (!body::IsEnd(from, i)) {
+      joint.rotations = {{body::Axis::kZ}, {body::Axis::kX}, {body::Axis::kY}};
+    }
+    joints.push_back(std::move(joint));
+  }
+  Motion out{body::MakeSkeleton(std::move(joints)), motion.rate_hz, motion.start_s, {}};
+  out.q.setZero(out.skeleton.dof, motion.frames());
+  body::Kinematics at(from);
+  std::vector<Eigen::Matrix3d> R_WJ(from.joints.size());
+  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    if (frame > 0) out.q.col(frame) = out.q.col(frame - 1);  // The nearest angles.
+    body::ComputeKinematics(from, motion.q.col(frame), at);
+    out.q.col(frame).head<3>() = motion.q.col(frame).head<3>();
+    for (int i = 0; i < from.size(); ++i) {
+      const body::Joint& joint = out.skeleton.joint(i);
+      R_WJ[Index(i)] = at.R_WJ[Index(i)] * rest.R_WJ[Index(i)].transpose();
+      if (joint.rotations.empty()) continue;
+      const Eigen::Matrix3d R_PJ =
+          i == 0 ? R_WJ[0]
+                 : Eigen::Matrix3d(R_WJ[Index(joint.parent)].transpose() * R_WJ[Index(i)]);
+      body::SetJointRotation(joint, R_PJ, out.q.col(frame));
+    }
   }
   return out;
 }

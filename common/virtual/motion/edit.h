@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "common/base/result.h"
@@ -52,6 +55,15 @@ Motion Looped(const Motion& motion, double seconds, double ease_s = 0.5);
 /// helpers of the rig. A wrist keeps an end point "NAME_end" where its hand goes on. A CMU skeleton
 /// becomes one of 56 degrees of freedom, those of StandardPerson.
 Result<Motion> WithLandmarksOnly(const Motion& motion);
+
+/// The same movement on a skeleton as programs for avatars want it: at rest (every angle 0) it
+/// stands in a T-pose and looks along x, and its joints have the names of the human bones of Unity
+/// and VRM ("Hips", "Spine", "LeftUpperLeg", ...). Joints that those do not know keep their names.
+/// Every joint that is not an end turns about z, x and y. InvalidData as of FindLandmarks().
+Result<Motion> Humanoid(const Motion& motion);
+/// Names of the human bones of Unity, one a joint of a person's skeleton under whatever names;
+/// empty for a joint that is none of them.
+Result<std::vector<std::string>> HumanBones(const body::Skeleton& skeleton);
 
 /// Turned about the vertical and moved over the floor, so that in the middle (median) of the motion
 /// the person looks along x with the hips over the origin.

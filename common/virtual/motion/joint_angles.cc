@@ -1,13 +1,17 @@
 #include "common/virtual/motion/joint_angles.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "common/base/rotation.h"
+#include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/body/kinematics.h"
 #include "common/body/landmarks.h"
@@ -250,6 +254,224 @@ Result<motion::Table> JointAngles(const motion::Motion& motion, const motion::Mo
     }
   }
   return table;
+}
+
+namespace {
+
+/// W's axes in OpenSim's: x ahead, y up, z right.
+const Matrix3d& OpenSimOfW() {
+  static const Matrix3d axes = (Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();
+  return axes;
+}
+
+std::string Numbers(std::initializer_list<double> values) {
+  std::string text;
+  for (const double value : values) {
+    if (!text.empty()) text += ' ';
+    text += text::Fixed(std::abs(value) < 5e-9 ? 0 : value, 8);
+  }
+  return text;
+}
+
+std::string Numbers(const Vector3d& v) { return Numbers({v.x(), v.y(), v.z()}); }
+
+std::string Tag(const std::string& name, const std::string& text) {
+  return "<" + name + ">" + text + "</" + name + ">\n";
+}
+
+/// A set of a model, with what is in it.
+std::string Set(const std::string& type, const std::string& name, const std::string& objects) {
+  return "<" + type + " name=\"" + name + "\">\n<objects>\n" + objects +
+         "</objects>\n<groups />\n</" + type + ">\n";
+}
+
+/// A body of the model, and the joint that carries it.
+struct ModelBody {
+  std::string name, joint;
+  Vector3d origin = Vector3d::Zero();  ///< At rest, from the root, in W's axes.
+  double mass_kg = 0;
+  Vector3d first_moment = Vector3d::Zero();  ///< kg m, in the body's axes.
+  Matrix3d inertia = Matrix3d::Zero();       ///< About its origin, kg m^2.
+};
+
+/// The person of a motion at rest, cut into the parts of the model.
+class ModelWriter {
+ public:
+  ModelWriter(const motion::Motion& motion, const body::Body& body)
+      : skeleton_(motion.skeleton), segments_(SegmentsOf(skeleton_, body.landmarks)) {
+    for (const int side : {0, 1}) AlignElbow(motion, side, segments_);
+    const auto joints = static_cast<std::size_t>(skeleton_.size());
+    rest_.assign(joints, Vector3d::Zero());
+    for (std::size_t i = 1; i < joints; ++i) {
+      const body::Joint& joint = skeleton_.joints[i];
+      rest_[i] = rest_[static_cast<std::size_t>(joint.parent)] + joint.offset_m;
+    }
+    FindParts(body.landmarks);
+    NameBodies(body.landmarks);
+    for (std::size_t i = 0; i < joints; ++i) AddMass(i, body.masses[i]);
+  }
+
+  std::string Write(const std::string& name) const {
+    std::string bodies, joints, markers;
+    for (const ModelBody& one : bodies_) {
+      const Vector3d centre =
+          one.mass_kg > 0 ? Vector3d(one.first_moment / one.mass_kg) : Vector3d(Vector3d::Zero());
+      const Matrix3d about =
+          one.inertia -
+          one.mass_kg * (centre.squaredNorm() * Matrix3d::Identity() - centre * centre.transpose());
+      bodies += "<Body name=\"" + one.name + "\">\n" + Tag("mass", Numbers({one.mass_kg})) +
+                Tag("mass_center", Numbers(centre)) +
+                Tag("inertia", Numbers({about(0, 0), about(1, 1), about(2, 2), about(0, 1),
+                                        about(0, 2), about(1, 2)})) +
+                "</Body>\n";
+    }
+    for (const Coordinates& joint : AllCoordinates()) joints += JointOf(joint);
+    for (std::size_t i = 0; i < rest_.size(); ++i) {
+      const auto part = static_cast<std::size_t>(parts_[i]);
+      markers += "<Marker name=\"" + skeleton_.joints[i].name + "\">\n" +
+                 Tag("socket_parent_frame", "/bodyset/" + bodies_[part].name) +
+                 Tag("location", Numbers(InBody(part, rest_[i]))) + Tag("fixed", "false") +
+                 "</Marker>\n";
+    }
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n"
+           "<Model name=\"" +
+           name + "\">\n" + Tag("credits", "Footing; segment masses: de Leva 1996") +
+           Tag("length_units", "meters") + Tag("force_units", "N") +
+           Tag("gravity", Numbers({0, -kStandardGravityMps2, 0})) +
+           Set("BodySet", "bodyset", bodies) + Set("JointSet", "jointset", joints) +
+           Set("MarkerSet", "markerset", markers) + Set("ForceSet", "forceset", "") +
+           "</Model>\n</OpenSimDocument>\n";
+  }
+
+ private:
+  /// Each joint belongs to the part whose joint it hangs on; the back, to the torso.
+  void FindParts(const body::Landmarks& landmarks) {
+    parts_.assign(rest_.size(), kPelvis);
+    std::vector<bool> back(rest_.size(), false);
+    lumbar_ = landmarks[Landmark::kNeck];
+    for (int joint = lumbar_; joint > landmarks[Landmark::kHips];
+         joint = skeleton_.joint(joint).parent) {
+      back[static_cast<std::size_t>(joint)] = true;
+      lumbar_ = joint;
+    }
+    for (std::size_t i = 1; i < rest_.size(); ++i) {
+      parts_[i] = back[i] ? static_cast<int>(kTorso)
+                          : parts_[static_cast<std::size_t>(skeleton_.joints[i].parent)];
+      for (int part = kThigh; part < kParts; ++part) {
+        if (segments_[static_cast<std::size_t>(part)].joint == static_cast<int>(i))
+          parts_[i] = part;
+      }
+    }
+  }
+
+  void NameBodies(const body::Landmarks& landmarks) {
+    const auto at = [&](int joint) { return rest_[static_cast<std::size_t>(joint)]; };
+    const auto set = [&](int part, const std::string& name, const std::string& joint,
+                         const Vector3d& origin) {
+      ModelBody& body = bodies_[static_cast<std::size_t>(part)];
+      body.name = name;
+      body.joint = joint;
+      body.origin = origin;
+    };
+    set(kPelvis, "pelvis", "ground_pelvis",
+        (at(landmarks[Landmark::kLeftHip]) + at(landmarks[Landmark::kRightHip])) / 2);
+    set(kTorso, "torso", "back", at(lumbar_));
+    for (const int side : {0, 1}) {
+      const std::string of = side == 0 ? "_l" : "_r";
+      constexpr std::tuple<Part, const char*, const char*> kLimbs[] = {
+          {kThigh, "femur", "hip"},
+          {kShank, "tibia", "knee"},
+          {kFoot, "calcn", "ankle"},
+          {kUpperArm, "humerus", "acromial"},
+          {kForearm, "radius", "elbow"}};
+      for (const auto& [part, name, joint] : kLimbs) {
+        const int own = part + side;
+        set(own, name + of, joint + of, at(segments_[static_cast<std::size_t>(own)].joint));
+      }
+    }
+  }
+
+  /// A direction at rest in a body's axes.
+  Matrix3d IntoBody(std::size_t part) const {
+    return OpenSimOfW() * segments_[part].R_JA.transpose();
+  }
+  Vector3d InBody(std::size_t part, const Vector3d& at_rest) const {
+    return IntoBody(part) * (at_rest - bodies_[part].origin);
+  }
+
+  void AddMass(std::size_t joint, const body::JointMass& mass) {
+    const auto part = static_cast<std::size_t>(parts_[joint]);
+    ModelBody& body = bodies_[part];
+    const Vector3d centre = InBody(part, rest_[joint] + mass.com_J);
+    body.mass_kg += mass.mass_kg;
+    body.first_moment += mass.mass_kg * centre;
+    body.inertia +=
+        IntoBody(part) * mass.inertia_J * IntoBody(part).transpose() +
+        mass.mass_kg * (centre.squaredNorm() * Matrix3d::Identity() - centre * centre.transpose());
+  }
+
+  std::string JointOf(const Coordinates& of) const {
+    const auto child = static_cast<std::size_t>(of.child);
+    const bool is_root = of.parent == kGround;
+    const std::string parent =
+        is_root ? "ground" : bodies_[static_cast<std::size_t>(of.parent)].name;
+    const Vector3d place = is_root
+                               ? Vector3d(Vector3d::Zero())
+                               : InBody(static_cast<std::size_t>(of.parent), bodies_[child].origin);
+    std::string coordinates, axes;
+    const auto add = [&](const std::string& kind, int number, const std::string& name,
+                         const Vector3d& axis) {
+      axes += "<TransformAxis name=\"" + kind + std::to_string(number) + "\">\n" +
+              Tag("coordinates", name) + Tag("axis", Numbers(axis)) +
+              (name.empty() ? "<Constant name=\"function\">\n" + Tag("value", "0") + "</Constant>\n"
+                            : "<LinearFunction name=\"function\">\n" + Tag("coefficients", "1 0") +
+                                  "</LinearFunction>\n") +
+              "</TransformAxis>\n";
+      if (name.empty()) return;
+      coordinates += "<Coordinate name=\"" + name + "\">\n" + Tag("default_value", "0") +
+                     Tag("default_speed_value", "0") +
+                     Tag("range", kind == "rotation" ? "-6.28318531 6.28318531" : "-100 100") +
+                     Tag("clamped", "false") + Tag("locked", "false") + Tag("prescribed", "false") +
+                     "</Coordinate>\n";
+    };
+    const Vector3d about[3] = {Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
+    for (int i = 0; i < 3; ++i) {
+      add("rotation", i + 1, of.names[static_cast<std::size_t>(i)], of.signs(i) * about[i]);
+    }
+    constexpr const char* kPlaces[] = {"pelvis_tx", "pelvis_ty", "pelvis_tz"};
+    for (int i = 0; i < 3; ++i) {
+      add("translation", i + 1, is_root ? kPlaces[i] : "", Vector3d::Unit(i));
+    }
+    const auto frame = [](const std::string& name, const std::string& on, const Vector3d& at) {
+      return "<PhysicalOffsetFrame name=\"" + name + "\">\n" + Tag("socket_parent", on) +
+             Tag("translation", Numbers(at)) + Tag("orientation", "0 0 0") +
+             "</PhysicalOffsetFrame>\n";
+    };
+    const ModelBody& body = bodies_[child];
+    return "<CustomJoint name=\"" + body.joint + "\">\n" +
+           Tag("socket_parent_frame", parent + "_offset") +
+           Tag("socket_child_frame", body.name + "_offset") + "<coordinates>\n" + coordinates +
+           "</coordinates>\n<frames>\n" +
+           frame(parent + "_offset", is_root ? "/ground" : "/bodyset/" + parent, place) +
+           frame(body.name + "_offset", "/bodyset/" + body.name, Vector3d::Zero()) +
+           "</frames>\n<SpatialTransform>\n" + axes + "</SpatialTransform>\n</CustomJoint>\n";
+  }
+
+  const body::Skeleton& skeleton_;
+  Segments segments_;
+  std::vector<Vector3d> rest_;  ///< Places of the joints from the root.
+  std::vector<int> parts_;      ///< Part of each joint.
+  int lumbar_ = 0;              ///< The lowest joint of the back.
+  std::array<ModelBody, kParts> bodies_;
+};
+
+}  // namespace
+
+Result<std::string> OpenSimModel(const motion::Motion& motion, const body::PersonParameters& person,
+                                 const std::string& name) {
+  const auto body = body::MakeBody(motion.skeleton, person);
+  if (!body) return body.error();
+  return ModelWriter(motion, *body).Write(name);
 }
 
 }  // namespace footing::joint_angles

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <string>
+
 #include "common/base/result.h"
+#include "common/body/body.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
 
@@ -18,5 +21,16 @@ namespace footing::joint_angles {
 /// or, to compare two motions, the one nearest to the same frame of `near` (null: none).
 Result<motion::Table> JointAngles(const motion::Motion& motion,
                                   const motion::Motion* near = nullptr);
+
+/// The person as a model for OpenSim (.osim, format 4.0), whose coordinates are the angles of
+/// JointAngles(): twelve rigid bodies with the lengths of the skeleton and with masses, centres of
+/// mass and inertias as of body::MakeBody, joined as those angles say, and the skeleton's joints as
+/// markers under their names. It has no muscles and no geometry. The trunk is one body above the
+/// lowest joint of the back. InvalidData as of JointAngles() and MakeBody().
+Result<std::string> OpenSimModel(const motion::Motion& motion, const body::PersonParameters& person,
+                                 const std::string& name);
+
+/// Name of the body of OpenSimModel() on which a foot's ground force acts.
+inline const char* OpenSimFoot(bool left) { return left ? "calcn_l" : "calcn_r"; }
 
 }  // namespace footing::joint_angles

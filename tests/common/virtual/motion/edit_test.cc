@@ -186,6 +186,44 @@ TEST(Edit, ACmuSkeletonWithLandmarksOnlyIsAStandardPersons) {
   }
 }
 
+TEST(Edit, AHumanoidRestsInATPoseAndMovesAsBefore) {
+  const Motion motion = Swinging(20, 1);
+  const auto humanoid = Humanoid(motion);
+  ASSERT_TRUE(humanoid.ok()) << humanoid.error().message;
+  const body::Skeleton& skeleton = humanoid->skeleton;
+  // The bones that Unity needs of every humanoid, and others that it knows.
+  for (const char* name :
+       {"Hips",          "Spine",         "Chest",         "UpperChest",    "Neck",
+        "Head",          "LeftShoulder",  "LeftUpperArm",  "LeftLowerArm",  "LeftHand",
+        "RightUpperArm", "RightLowerArm", "RightHand",     "LeftUpperLeg",  "LeftLowerLeg",
+        "LeftFoot",      "LeftToes",      "RightUpperLeg", "RightLowerLeg", "RightFoot"}) {
+    EXPECT_GE(body::FindJoint(skeleton, name), 0) << name;
+  }
+  const auto bone = [&](const char* from, const char* to) -> Eigen::Vector3d {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    const int first = body::FindJoint(skeleton, from);
+    for (int i = body::FindJoint(skeleton, to); i > first; i = skeleton.joint(i).parent) {
+      sum += skeleton.joint(i).offset_m;
+    }
+    return sum.normalized();
+  };
+  const Eigen::Vector3d left = Eigen::Vector3d::UnitY(), up = Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR(bone("LeftUpperArm", "LeftHand").dot(left), 1, 1e-9);
+  EXPECT_NEAR(bone("RightUpperArm", "RightHand").dot(-left), 1, 1e-9);
+  EXPECT_NEAR(bone("LeftUpperLeg", "LeftFoot").dot(-up), 1, 1e-9);
+  EXPECT_NEAR(bone("RightUpperLeg", "RightFoot").dot(-up), 1, 1e-9);
+  EXPECT_GT(bone("LeftFoot", "LeftToes").x(), 0.8);
+  EXPECT_GT(bone("Spine", "Head").dot(up), 0.99);
+  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    const auto here = Places(motion, frame), there = Places(*humanoid, frame);
+    for (std::size_t i = 0; i < here.size(); ++i) EXPECT_LT((here[i] - there[i]).norm(), 1e-9);
+  }
+  // Another reader finds the same person in it.
+  const auto read = ParseBvh(WriteBvh(*humanoid), "humanoid.bvh");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_TRUE(body::FindLandmarks(read->skeleton).ok());
+}
+
 TEST(Edit, AnyRigWithLandmarksOnlyLosesItsHelpers) {
   SKIP_WITHOUT_SHARED_DATA();
   for (const char* path : {"mocap/mass_bvh/walk.bvh", "mocap/cmu_bvh/002_04.bvh"}) {
