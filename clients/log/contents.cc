@@ -13,6 +13,7 @@
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
+#include <nlohmann/json.hpp>
 
 #include "common/base/text.h"
 #include "common/base/units.h"
@@ -47,18 +48,62 @@ struct Sheet {
   std::optional<recording::OutputFile> file;
   std::string text;
   ExportedFile exported;
+  std::map<std::string, RisingTimes> times;  ///< By what the samples are of.
+  std::map<std::string, RisingTimes> tidy_times;
 };
+
+/// Source of a sample, as far as its row names it: a device, or a hand that a tracker sees.
+std::string SeriesOf(const google::protobuf::Message& row) {
+  std::string series;
+  const google::protobuf::Reflection& fields = *row.GetReflection();
+  for (const char* name : {"device", "rig", "role", "joint", "tracker", "source", "body"}) {
+    const auto* field = row.GetDescriptor()->FindFieldByName(name);
+    if (field == nullptr || field->is_repeated()) continue;
+    using Field = google::protobuf::FieldDescriptor;
+    if (field->cpp_type() == Field::CPPTYPE_UINT32) {
+      series += std::to_string(fields.GetUInt32(row, field));
+    } else if (field->cpp_type() == Field::CPPTYPE_ENUM) {
+      series += std::to_string(fields.GetEnumValue(row, field));
+    } else if (field->cpp_type() == Field::CPPTYPE_STRING) {
+      series += fields.GetString(row, field);
+    }
+    series += '/';
+  }
+  return series;
+}
+
+/// Sets the times `sampled_ns` of a message's rows so that those of each source rise.
+void Mend(const CsvTable& table, google::protobuf::Message& message, Sheet& sheet) {
+  const auto* list = table.row_list();
+  if (list == nullptr) return;
+  const auto* time = list->message_type()->FindFieldByName("sampled_ns");
+  if (time == nullptr || time->is_repeated() ||
+      time->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_INT64) {
+    return;
+  }
+  const google::protobuf::Reflection& fields = *message.GetReflection();
+  for (int i = 0; i < fields.FieldSize(message, list); ++i) {
+    google::protobuf::Message& row = *fields.MutableRepeatedMessage(&message, list, i);
+    const std::int64_t time_ns = row.GetReflection()->GetInt64(row, time);
+    if (time_ns == 0) continue;  // Not stated.
+    const std::int64_t risen_ns = sheet.times[SeriesOf(row)].Next(time_ns);
+    if (risen_ns == time_ns) continue;
+    row.GetReflection()->SetInt64(&row, time, risen_ns);
+    ++sheet.exported.mended_times;
+  }
+}
 
 class CsvExporter {
  public:
-  CsvExporter(std::string_view bytes, const std::string& path) : tables_(bytes, path) {}
+  CsvExporter(std::string_view bytes, const std::string& path, bool tidy)
+      : tables_(bytes, path), tidy_(tidy) {}
 
   Result<std::vector<ExportedFile>> Run(const std::string& folder, bool replace) {
     if (const Result<void> learned = tables_.Learn(); !learned) return learned.error();
     if (const Result<void> opened = Open(folder, replace); !opened) return opened.error();
     const Result<void> written =
         tables_.Walk([this](std::uint16_t channel, const mcap::Message& record,
-                            const google::protobuf::Message& message) {
+                            google::protobuf::Message& message) {
           return WriteRows(tables_.topics().at(channel), record, message, sheets_[channel]);
         });
     if (!written) return written.error();
@@ -67,6 +112,12 @@ class CsvExporter {
       if (const Result<void> end = sheet.file->Write(sheet.text); !end) return end.error();
       files.push_back(sheet.exported);
     }
+    if (!tidy_) return files;
+    const std::string path = folder + "/codebook.json";
+    Result<recording::OutputFile> codebook = recording::OutputFile::Create(path, replace);
+    if (!codebook) return codebook.error();
+    if (const auto end = codebook->Write(codebook_.dump(2) + "\n"); !end) return end.error();
+    files.push_back({"", path, 0, 0});
     return files;
   }
 
@@ -83,7 +134,11 @@ class CsvExporter {
       Result<recording::OutputFile> file = recording::OutputFile::Create(path, replace);
       if (!file) return file.error();
       sheet.file.emplace(std::move(*file));
-      sheet.exported = {topic.topic, path, 0};
+      sheet.exported = {topic.topic, path, 0, 0};
+      if (tidy_) {
+        sheet.text = TidyHeader(topic, name + ".csv");
+        continue;
+      }
       const std::string columns = topic.table->Header();
       sheet.text = "log_time_ns,publish_time_ns,sequence" + (columns.empty() ? "" : "," + columns);
       for (const std::string& column : tables_.notes().Columns(topic.table->row_type())) {
@@ -97,15 +152,32 @@ class CsvExporter {
   }
 
   Result<void> WriteRows(const TopicTable& topic, const mcap::Message& record,
-                         const google::protobuf::Message& message, Sheet& sheet) {
-    const std::string prefix = std::to_string(record.log_time_ns) + "," +
-                               std::to_string(record.publish_time_ns) + "," +
-                               std::to_string(record.sequence) + ",";
+                         google::protobuf::Message& message, Sheet& sheet) {
+    Mend(*topic.table, message, sheet);
     const std::size_t before = sheet.text.size();
-    const auto end = [&](const google::protobuf::Message* entry) {
-      return tables_.notes().Cells(topic.topic, topic.table->row_type(), entry, record.log_time_ns);
-    };
-    topic.table->AppendRows(message, prefix, end, sheet.text);
+    if (tidy_) {
+      const auto begin = [&](const google::protobuf::Message* entry) {
+        const std::string series = entry == nullptr ? "" : SeriesOf(*entry);
+        const std::int64_t time_ns =
+            sheet.tidy_times[series].Next(tables_.notes().SinceFirstNs(TimeOf(record, entry)));
+        std::string cells = text::Fixed(NanosecondsToSeconds(time_ns), 6) + "," +
+                            std::to_string(record.sequence) + ",";
+        if (topic.table->row_type() == nullptr || !HasRole(topic)) return cells;
+        return cells + tables_.notes().Role(topic.topic, topic.table->row_type(), entry) + ",";
+      };
+      topic.table->AppendRows(
+          message, begin, [](const auto*) { return std::string(); }, sheet.text, kTidyDecimals);
+    } else {
+      const std::string prefix = std::to_string(record.log_time_ns) + "," +
+                                 std::to_string(record.publish_time_ns) + "," +
+                                 std::to_string(record.sequence) + ",";
+      const auto end = [&](const google::protobuf::Message* entry) {
+        return tables_.notes().Cells(topic.topic, topic.table->row_type(), entry,
+                                     record.log_time_ns);
+      };
+      topic.table->AppendRows(
+          message, [&prefix](const auto*) { return prefix; }, end, sheet.text);
+    }
     sheet.exported.rows += static_cast<std::uint64_t>(std::count(
         sheet.text.begin() + static_cast<std::ptrdiff_t>(before), sheet.text.end(), '\n'));
     if (sheet.text.size() < kWriteBytes) return {};
@@ -114,17 +186,62 @@ class CsvExporter {
     return written;
   }
 
+  bool HasRole(const TopicTable& topic) const {
+    const std::vector<std::string> notes = tables_.notes().Columns(topic.table->row_type());
+    return std::find(notes.begin(), notes.end(), "device_role") != notes.end();
+  }
+
+  /// The first line of a tidy table, whose columns go into the codebook.
+  std::string TidyHeader(const TopicTable& topic, const std::string& file) {
+    using Json = nlohmann::ordered_json;
+    Json& columns = codebook_[file];
+    std::string line;
+    const auto add = [&](const std::string& name, const char* type, const std::string& what) {
+      line += (line.empty() ? "" : ",") + name;
+      columns[name] = {{"description", what}, {"type", type}};
+      if (const std::string unit = UnitOf(name); !unit.empty()) columns[name]["unit"] = unit;
+    };
+    add("time_s", "number", "Time of the sample, or of its tick, from the recording's start");
+    add("sequence", "integer", "Number of the tick: rows of one tick have the same");
+    if (HasRole(topic)) add("device_role", "text", "Role of the device then");
+    for (const CsvTable::Column& column : topic.table->AllColumns()) {
+      using Field = google::protobuf::FieldDescriptor;
+      const Field& field = *column.field;
+      const bool is_real =
+          field.cpp_type() == Field::CPPTYPE_DOUBLE || field.cpp_type() == Field::CPPTYPE_FLOAT;
+      std::string name = UnitLast(tables_.notes().Named(topic.topic, column.name));
+      while (columns.contains(name)) name = "message_" + name;
+      add(name,
+          field.enum_type() != nullptr              ? "category"
+          : field.cpp_type() == Field::CPPTYPE_BOOL ? "flag"
+          : is_real                                 ? "number"
+          : column.is_number                        ? "integer"
+                                                    : "text",
+          field.full_name() + " (" + column.name + ")");
+      if (field.enum_type() == nullptr) continue;
+      Json& levels = columns[name]["levels"] = Json::array();
+      for (int i = 0; i < field.enum_type()->value_count(); ++i) {
+        levels.push_back(field.enum_type()->value(i)->name());
+      }
+    }
+    return line + "\n";
+  }
+
+  static constexpr int kTidyDecimals = 6;
+
   Tables tables_;
+  const bool tidy_;
   std::map<std::uint16_t, Sheet> sheets_;
+  nlohmann::ordered_json codebook_ = nlohmann::ordered_json::object();  ///< By file and column.
 };
 
 }  // namespace
 
 Result<std::vector<ExportedFile>> ExportCsv(const std::string& recording, const std::string& folder,
-                                            bool replace) {
+                                            bool replace, bool tidy) {
   Result<recording::MappedFile> file = recording::OpenRecording(recording);
   if (!file) return file.error();
-  return CsvExporter(file->bytes(), recording).Run(folder, replace);
+  return CsvExporter(file->bytes(), recording, tidy).Run(folder, replace);
 }
 
 namespace {
@@ -303,6 +420,30 @@ std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
   return cells;
 }
 
+std::string RowNotes::Named(const std::string& topic, const std::string& column) const {
+  const Server& server = ServerAt(topic);
+  for (const auto& [list, names] :
+       {std::pair("links_", &server.links), std::pair("contacts_", &server.contacts)}) {
+    if (!column.starts_with(list)) continue;
+    const std::size_t begin = std::string_view(list).size();
+    std::size_t number = 0;
+    const auto [end, error] =
+        std::from_chars(column.data() + begin, column.data() + column.size(), number);
+    if (error != std::errc() || number >= names->size() || (*names)[number].empty()) continue;
+    // A name comes from a motion file.
+    std::string name;
+    for (const char c : (*names)[number]) {
+      name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+    }
+    return name + std::string(end, column.data() + column.size());
+  }
+  return column;
+}
+
+std::int64_t RowNotes::SinceFirstNs(std::int64_t time_ns) const {
+  return (time_ns - static_cast<std::int64_t>(first_ns_)) / 1000 * 1000;
+}
+
 Result<void> Tables::Learn() {
   mcap::Visitor visitor;
   visitor.schema = [this](const mcap::Schema& schema) {
@@ -320,6 +461,11 @@ Result<void> Tables::Learn() {
   };
   visitor.message = [this](const mcap::Message& record) {
     TopicTable& topic = topics_[record.channel_id];
+    if (record.log_time_ns < topic.newest_ns) {
+      topic.steps_back[topic.messages] = record.log_time_ns;
+    }
+    topic.newest_ns = std::max(topic.newest_ns, record.log_time_ns);
+    ++topic.messages;
     const google::protobuf::Message* parsed = Parse(topic, record);
     if (parsed == nullptr) return;
     notes_.TakeTime(record.log_time_ns);
@@ -337,19 +483,49 @@ Result<void> Tables::Walk(const Visit& visit) {
   mcap::Visitor visitor;
   visitor.message = [&](const mcap::Message& record) {
     if (!first_failure_) return;
-    const TopicTable& topic = topics_[record.channel_id];
-    const google::protobuf::Message* parsed = Parse(topic, record);
-    if (parsed == nullptr) return;
-    notes_.Take(topic.topic, record.data);
-    Fail(visit(record.channel_id, record, *parsed));
+    TopicTable& topic = topics_[record.channel_id];
+    const auto& later = topic.steps_back;
+    std::vector<Held>& held = held_[record.channel_id];
+    const bool waits =
+        std::any_of(later.upper_bound(topic.shown++), later.end(),
+                    [&record](const auto& step) { return step.second < record.log_time_ns; });
+    if (waits) {
+      held.push_back({record, std::string(record.data)});
+      return;
+    }
+    std::erase_if(held, [&record](const Held& one) {
+      return one.record.log_time_ns == record.log_time_ns && one.record.sequence == record.sequence;
+    });
+    ShowHeld(held, record.log_time_ns, visit);
+    Show(record, visit);
   };
   mcap::Walk(bytes_, visitor, mcap::WalkMode::kStrict);
+  for (auto& [channel, held] : held_) ShowHeld(held, UINT64_MAX, visit);
   return first_failure_;
 }
 
-const google::protobuf::Message* Tables::Parse(const TopicTable& topic,
-                                               const mcap::Message& record) {
-  const google::protobuf::Message* parsed = pool_.Parse(topic.schema_id, record.data);
+void Tables::ShowHeld(std::vector<Held>& held, std::uint64_t before_ns, const Visit& visit) {
+  std::stable_sort(held.begin(), held.end(), [](const Held& one, const Held& other) {
+    return one.record.log_time_ns < other.record.log_time_ns;
+  });
+  while (!held.empty() && held.front().record.log_time_ns < before_ns) {
+    mcap::Message record = held.front().record;
+    record.data = held.front().data;
+    Show(record, visit);
+    held.erase(held.begin());
+  }
+}
+
+void Tables::Show(const mcap::Message& record, const Visit& visit) {
+  const TopicTable& topic = topics_[record.channel_id];
+  google::protobuf::Message* parsed = Parse(topic, record);
+  if (parsed == nullptr) return;
+  notes_.Take(topic.topic, record.data);
+  Fail(visit(record.channel_id, record, *parsed));
+}
+
+google::protobuf::Message* Tables::Parse(const TopicTable& topic, const mcap::Message& record) {
+  google::protobuf::Message* parsed = pool_.Parse(topic.schema_id, record.data);
   if (parsed == nullptr) {
     Fail(InvalidData(path_ + ": a message on " + topic.topic + " does not fit its schema"));
   }
@@ -390,8 +566,8 @@ class DataSet {
         if (const auto done = Write(motions, file, options_.replace); !done) return done.error();
       }
       exported.tables.push_back({motions + "/" + files.front().name, table.tracksys,
-                                 table.channels.size(),
-                                 table.cells.size() / table.channels.size()});
+                                 table.channels.size(), table.cells.size() / table.channels.size(),
+                                 table.mended_times});
     }
     for (const bids::File& file : bids::EventFiles(motion.events, stem)) {
       if (const auto done = Write(motions, file, options_.replace); !done) return done.error();

@@ -26,14 +26,45 @@ struct ExportedFile {
   std::string topic;
   std::string path;
   std::uint64_t rows = 0;
+  std::uint64_t mended_times = 0;  ///< Rows that were given a later time (RisingTimes).
+};
+
+/// Makes the times of one series of samples rise strictly, as readers of other programs require.
+///
+/// A device sends the sample that its sensor holds more than once, and recordings of before
+/// footingd dated the frames of one burst have hands that go back by some milliseconds. Such a
+/// sample gets the earliest later time: 1 us behind the one before, which a double holds for
+/// decades after the host's boot.
+class RisingTimes {
+ public:
+  std::int64_t Next(std::int64_t time_ns) {
+    const bool rises = !newest_ns_ || time_ns > *newest_ns_;
+    mended_ += rises ? 0 : 1;
+    newest_ns_ = rises ? time_ns : *newest_ns_ + kStepNs;
+    return *newest_ns_;
+  }
+  /// Times that were not later than the one before.
+  std::uint64_t mended() const { return mended_; }
+
+ private:
+  static constexpr std::int64_t kStepNs = 1000;
+
+  std::optional<std::int64_t> newest_ns_;
+  std::uint64_t mended_ = 0;
 };
 
 /// Writes one CSV file a topic into `folder` (made if it is not there): log_time_ns,
-/// publish_time_ns, sequence, then the columns of CsvTable. A recording that is cut short or
+/// publish_time_ns, sequence, then the columns of CsvTable. The times `sampled_ns` of each source
+/// rise strictly. A recording that is cut short or
 /// damaged is InvalidData that names the repair, and nothing is written; an existing file is a
 /// usage error, unless `replace`.
+///
+/// `tidy` writes fewer columns for statistics programs: time_s (of the sample, from the recording's
+/// start), sequence, device_role, and the message's own, with the names of joints in place of their
+/// numbers and the unit last ("lfemur_position_x_m"), rounded to 1e-6. Beside the tables stands
+/// codebook.json, which has the unit, the type and the levels of each column.
 Result<std::vector<ExportedFile>> ExportCsv(const std::string& recording, const std::string& folder,
-                                            bool replace);
+                                            bool replace, bool tidy = false);
 
 /// Makes the folder of an export, and those above it, where they are not there. Failure says why.
 inline Result<void> MakeFolder(const std::string& folder) {
@@ -74,6 +105,10 @@ class RowNotes {
   /// The cells of a row, each with a comma in front. `entry` is null for a message with one row.
   std::string Cells(const std::string& topic, const google::protobuf::Descriptor* row,
                     const google::protobuf::Message* entry, std::uint64_t log_time_ns) const;
+  /// The column's name with the joint or contact point that it is about in place of its number.
+  std::string Named(const std::string& topic, const std::string& column) const;
+  /// Time since the earliest one taken, in whole microseconds, ns.
+  std::int64_t SinceFirstNs(std::int64_t time_ns) const;
 
  private:
   struct Server {
@@ -94,15 +129,26 @@ class RowNotes {
   std::size_t most_deviations_ = 0;
 };
 
+/// When a row was, ns of the server's clock: the sample's own time where it has one, else the
+/// tick's. Null is the row of a message that has one row.
+std::int64_t TimeOf(const mcap::Message& record, const google::protobuf::Message* row);
+
 /// One topic of a recording, whose messages are rows of a table.
 struct TopicTable {
   std::string topic;
   std::uint16_t schema_id = 0;
   std::optional<CsvTable> table;  ///< Nothing when the topic has no message.
+  std::uint64_t messages = 0;     ///< Found by the first pass, ...
+  std::uint64_t shown = 0;        ///< ... and by the second.
+  std::uint64_t newest_ns = 0;
+  /// Messages that are older than one before them: their place in the topic, and their time.
+  std::map<std::uint64_t, std::uint64_t> steps_back = {};
 };
 
 /// The messages of a recording as rows of tables, one table a topic, in two passes: the first
-/// learns the columns, roles and names, the second visits the messages in their order.
+/// learns the columns, roles and names, the second visits the messages of each topic in the order
+/// of their log times. A recording of a server's ring begins with the server's present state: it
+/// comes where the ring reaches it, and once if the ring has it, too.
 class Tables {
  public:
   /// `bytes` of the recording stay valid as long as this; `path` names it in errors.
@@ -114,7 +160,7 @@ class Tables {
 
   /// Ends at the first failure. `channel` is the topic's key in topics().
   using Visit = std::function<Result<void>(std::uint16_t channel, const mcap::Message& record,
-                                           const google::protobuf::Message& message)>;
+                                           google::protobuf::Message& message)>;
   Result<void> Walk(const Visit& visit);
 
   /// Topics by MCAP channel id.
@@ -123,7 +169,16 @@ class Tables {
   const RowNotes& notes() const { return notes_; }
 
  private:
-  const google::protobuf::Message* Parse(const TopicTable& topic, const mcap::Message& record);
+  /// A message that waits for older ones of its topic.
+  struct Held {
+    mcap::Message record;
+    std::string data;
+  };
+
+  google::protobuf::Message* Parse(const TopicTable& topic, const mcap::Message& record);
+  void Show(const mcap::Message& record, const Visit& visit);
+  /// Shows those of one topic that are older than this.
+  void ShowHeld(std::vector<Held>& held, std::uint64_t before_ns, const Visit& visit);
   /// Keeps the first failure.
   void Fail(Result<void> result) {
     if (!result && first_failure_) first_failure_ = std::move(result);
@@ -134,6 +189,7 @@ class Tables {
   recording::SchemaPool pool_;
   RowNotes notes_;
   std::map<std::uint16_t, TopicTable> topics_;
+  std::map<std::uint16_t, std::vector<Held>> held_;
   Result<void> first_failure_;
 };
 
@@ -151,6 +207,7 @@ struct ExportedTable {
   std::string tracking_system;
   std::size_t channels = 0;
   std::size_t samples = 0;
+  std::size_t mended_times = 0;  ///< Samples that were given a later time.
 };
 
 /// Result of an export in the form of BIDS-motion.

@@ -4,8 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <type_traits>
 #include <utility>
+
+#include "common/base/text.h"
 
 namespace footing::log_client {
 namespace {
@@ -82,7 +85,7 @@ void UseValue(const pb::Message& message, const pb::FieldDescriptor& field, int 
 }
 
 void AppendValue(const pb::Message& message, const pb::FieldDescriptor& field, int index,
-                 std::string& out) {
+                 std::optional<int> decimals, std::string& out) {
   UseValue(message, field, index, [&](const auto& value) {
     using Value = std::decay_t<decltype(value)>;
     if constexpr (std::is_same_v<Value, std::string>) {
@@ -91,7 +94,9 @@ void AppendValue(const pb::Message& message, const pb::FieldDescriptor& field, i
     } else if constexpr (std::is_same_v<Value, bool>) {
       out += value ? '1' : '0';
     } else if constexpr (std::is_floating_point_v<Value>) {
-      if (std::isfinite(value)) AppendNumber(value, out);
+      if (!std::isfinite(value)) return;
+      decimals ? text::AppendFixed(out, static_cast<double>(value), *decimals)
+               : AppendNumber(value, out);
     } else if (field.enum_type() != nullptr) {
       AppendEnum(*field.enum_type(), static_cast<int>(value), out);
     } else {
@@ -122,6 +127,13 @@ const pb::Message& Entry(const pb::Message& message, const pb::FieldDescriptor& 
   const pb::Reflection& r = *message.GetReflection();
   return field.is_repeated() ? r.GetRepeatedMessage(message, &field, static_cast<int>(index))
                              : r.GetMessage(message, &field);
+}
+
+/// A hash or an epoch is a name of 64 bits, and no number.
+bool IsNumber(const pb::FieldDescriptor& field) {
+  if (field.cpp_type() == pb::FieldDescriptor::CPPTYPE_STRING) return false;
+  return field.cpp_type() != pb::FieldDescriptor::CPPTYPE_UINT64 ||
+         !(field.name().ends_with("_hash") || field.name().ends_with("epoch"));
 }
 
 const pb::FieldDescriptor* FirstList(const pb::Descriptor& type) {
@@ -189,8 +201,7 @@ void CsvTable::Names(const std::vector<Node>& nodes, const std::string& prefix,
       std::string name = prefix + node.field->name();
       if (node.field->is_repeated()) name.append(1, '_').append(std::to_string(k));
       if (node.field->message_type() == nullptr) {
-        const bool is_text = node.field->cpp_type() == pb::FieldDescriptor::CPPTYPE_STRING;
-        columns.push_back({name, !is_text});
+        columns.push_back({name, node.field, IsNumber(*node.field)});
       } else {
         Names(node.children, name + "_", columns);
       }
@@ -222,29 +233,30 @@ std::string CsvTable::Header() const {
   return header;
 }
 
-void CsvTable::Cells(const pb::Message* message, const std::vector<Node>& nodes, std::string& out) {
+void CsvTable::Cells(const pb::Message* message, const std::vector<Node>& nodes,
+                     std::optional<int> decimals, std::string& out) {
   for (const Node& node : nodes) {
     const std::size_t here = message == nullptr ? 0 : Entries(*message, *node.field);
     for (std::size_t k = 0; k < node.entries; ++k) {
       if (node.field->message_type() != nullptr) {
-        Cells(k < here ? &Entry(*message, *node.field, k) : nullptr, node.children, out);
+        Cells(k < here ? &Entry(*message, *node.field, k) : nullptr, node.children, decimals, out);
         continue;
       }
       if (k < here) {
         AppendValue(*message, *node.field, node.field->is_repeated() ? static_cast<int>(k) : -1,
-                    out);
+                    decimals, out);
       }
       out += ',';
     }
   }
 }
 
-void CsvTable::AppendRows(const pb::Message& message, const std::string& prefix, const RowEnd& end,
-                          std::string& out) const {
+void CsvTable::AppendRows(const pb::Message& message, const RowEnd& begin, const RowEnd& end,
+                          std::string& out, std::optional<int> decimals) const {
   const auto append = [&](const pb::Message* entry) {
-    out += prefix;
-    Cells(&message, outer_, out);
-    Cells(entry, inner_, out);
+    out += begin(entry);
+    Cells(&message, outer_, decimals, out);
+    Cells(entry, inner_, decimals, out);
     if (out.back() == ',') out.pop_back();  // Each cell ends in a comma; the last one needs none.
     out += end(entry);
     out += '\n';
@@ -272,7 +284,7 @@ std::vector<std::string> CsvTable::NumberNames() const {
 void CsvTable::NumberCells(const pb::Message* message, const std::vector<Node>& nodes,
                            std::vector<double>& out) {
   for (const Node& node : nodes) {
-    if (node.field->cpp_type() == pb::FieldDescriptor::CPPTYPE_STRING) continue;
+    if (node.field->message_type() == nullptr && !IsNumber(*node.field)) continue;
     const std::size_t here = message == nullptr ? 0 : Entries(*message, *node.field);
     for (std::size_t k = 0; k < node.entries; ++k) {
       if (node.field->message_type() != nullptr) {
@@ -291,6 +303,50 @@ std::vector<double> CsvTable::Numbers(const pb::Message& message, const pb::Mess
   NumberCells(&message, outer_, numbers);
   NumberCells(entry, inner_, numbers);
   return numbers;
+}
+
+namespace {
+
+/// Units at the end of a field's name, and how others write them (UCUM).
+constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+    {"m", "m"},         {"mps", "m/s"},       {"mps2", "m/s2"}, {"m2", "m2"},  {"rad", "rad"},
+    {"radps", "rad/s"}, {"deg", "deg"},       {"n", "N"},       {"nm", "N.m"}, {"ns", "ns"},
+    {"us", "us"},       {"ms", "ms"},         {"s", "s"},       {"hz", "Hz"},  {"kg", "kg"},
+    {"c", "Cel"},       {"kgm2ps", "kg.m2/s"}};
+
+/// Where the unit's word begins in a name, and the unit; npos where it has none.
+std::pair<std::size_t, std::string_view> FindUnit(std::string_view name) {
+  const auto word_at = [&name](std::size_t end) {
+    const std::size_t line = end == 0 ? std::string_view::npos : name.rfind('_', end - 1);
+    return line == std::string_view::npos ? 0 : line + 1;
+  };
+  std::size_t end = name.size();
+  std::size_t begin = word_at(end);
+  std::string_view word = name.substr(begin, end - begin);
+  // An axis, or the place of an entry, stands behind it.
+  const bool is_part = word == "x" || word == "y" || word == "z" || word == "w" ||
+                       (!word.empty() && word.find_first_not_of("0123456789") == word.npos);
+  if (is_part && begin > 0) {
+    end = begin - 1;
+    begin = word_at(end);
+    word = name.substr(begin, end - begin);
+  }
+  for (const auto& [suffix, unit] : kUnits) {
+    if (word == suffix && begin > 0) return {begin, unit};
+  }
+  return {std::string_view::npos, ""};
+}
+
+}  // namespace
+
+std::string UnitOf(const std::string& column) { return std::string(FindUnit(column).second); }
+
+std::string UnitLast(const std::string& column) {
+  const std::size_t begin = FindUnit(column).first;
+  if (begin == std::string::npos) return column;
+  const std::size_t end = column.find('_', begin);
+  if (end == std::string::npos) return column;
+  return column.substr(0, begin) + column.substr(end + 1) + "_" + column.substr(begin, end - begin);
 }
 
 }  // namespace footing::log_client

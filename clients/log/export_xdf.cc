@@ -16,6 +16,7 @@
 #include "clients/log/contents.h"
 #include "common/recording/recording_writer.h"
 #include "common/stream/device.h"
+#include "common/stream/hand_frames.h"
 
 namespace footing::log_client {
 namespace {
@@ -57,8 +58,9 @@ std::string EventText(const pb::Message& event) {
   return text.empty() ? name : name + ": " + text;
 }
 
-/// When a row was: the device's own time where it has one.
-double TimeOf(const mcap::Message& record, const pb::Message* row) {
+}  // namespace
+
+std::int64_t TimeOf(const mcap::Message& record, const pb::Message* row) {
   std::int64_t time_ns = 0;
   for (const char* name : {"sampled_ns", "host_ns"}) {
     if (row == nullptr || time_ns != 0) break;
@@ -66,7 +68,21 @@ double TimeOf(const mcap::Message& record, const pb::Message* row) {
     if (field != nullptr) time_ns = row->GetReflection()->GetInt64(*row, field);
   }
   if (time_ns == 0) time_ns = static_cast<std::int64_t>(record.log_time_ns);
-  return 1e-9 * static_cast<double>(time_ns);
+  return time_ns;
+}
+
+namespace {
+
+/// A channel of a server as XDF's tools name what is in it; others keep their own names.
+std::string TypeOf(const std::string& channel) {
+  constexpr std::pair<std::string_view, std::string_view> kTypes[] = {
+      {"motion", "Accelerometer"}, {"boards", "Force"},      {"contacts", "Force"},
+      {"hands", "MoCap"},          {"reference", "MoCap"},   {"characters", "MoCap"},
+      {"nunchuk", "Controller"},   {"gamepad", "Controller"}};
+  for (const auto& [name, type] : kTypes) {
+    if (channel == name) return std::string(type);
+  }
+  return channel;
 }
 
 /// One stream on its way into the file.
@@ -74,6 +90,7 @@ struct Outgoing {
   xdf::Stream stream;
   xdf::Extent extent;
   xdf::Samples samples;
+  RisingTimes times;
 };
 
 class XdfExporter {
@@ -101,8 +118,8 @@ class XdfExporter {
         xdf::AppendClockOffset(outgoing.stream, outgoing.extent.last_s, out_);
       }
       xdf::AppendFooter(outgoing.stream, outgoing.extent, out_);
-      exported.streams.push_back(
-          {outgoing.stream.name, outgoing.stream.channels.size(), outgoing.extent.samples});
+      exported.streams.push_back({outgoing.stream.name, outgoing.stream.channels.size(),
+                                  outgoing.extent.samples, outgoing.times.mended()});
     }
     if (const Result<void> end = file->Write(out_); !end) return end.error();
     return exported;
@@ -114,7 +131,8 @@ class XdfExporter {
   struct Key {
     std::uint16_t channel = 0;
     std::uint32_t device = 0;
-    std::string about;  ///< "/left_board", "/main/left_hand"; may be empty.
+    std::string about;    ///< "/left_board", "/main/left_hand", "/main/head"; may be empty.
+    std::string tracker;  ///< Name of what saw it; may be empty.
     auto operator<=>(const Key&) const = default;
   };
 
@@ -130,7 +148,7 @@ class XdfExporter {
   }
 
   Key KeyOf(std::uint16_t channel, const TopicTable& topic, const pb::Message* row) const {
-    Key key{channel, 0, ""};
+    Key key{channel, 0, "", ""};
     if (row == nullptr || IsEvent(*row)) return key;
     key.device = DeviceOf(*row);
     if (const auto* number = FieldOf(*row, "character", pb::FieldDescriptor::CPPTYPE_UINT32)) {
@@ -146,8 +164,15 @@ class XdfExporter {
       role = number == 0 ? "" : stream::Name(static_cast<stream::DeviceRole>(number));
     }
     if (role.empty() && key.device != 0) role = std::to_string(key.device);
+    if (const auto* joint = FieldOf(*row, "joint", pb::FieldDescriptor::CPPTYPE_ENUM);
+        role.empty() && joint != nullptr) {
+      const int number = row->GetReflection()->GetEnumValue(*row, joint);
+      if (number != 0) role = stream::Name(static_cast<stream::BodyJoint>(number));
+    }
     if (!rig.empty()) key.about += "/" + rig;
     if (!role.empty()) key.about += "/" + role;
+    // Two trackers may see one hand, each in its own time.
+    key.tracker = TextOf(*row, "tracker");
     return key;
   }
 
@@ -157,12 +182,15 @@ class XdfExporter {
     if (!is_new) return at->second;
     stream.id = static_cast<std::uint32_t>(streams_.size());
     stream.is_text = row != nullptr && IsEvent(*row);
-    stream.type = stream.is_text ? "Markers" : topic.topic.substr(topic.topic.rfind('/') + 1);
+    stream.type =
+        stream.is_text ? "Markers" : TypeOf(topic.topic.substr(topic.topic.rfind('/') + 1));
     stream.channels = topic.table->NumberNames();
     if (stream.is_text) stream.channels = {"event"};
     stream.name = topic.topic.substr(topic.topic.starts_with('/') ? 1 : 0) + key.about;
-    // Two rigs have devices of one role.
-    if (!names_.insert(stream.name).second) stream.name += "_" + std::to_string(key.device);
+    // Two rigs have devices of one role, and two trackers see one hand.
+    if (!names_.insert(stream.name).second) {
+      stream.name += "_" + (key.tracker.empty() ? std::to_string(key.device) : key.tracker);
+    }
     stream.source_id = stream.name;
     stream.note = tables_.notes().DeviationNote(topic.topic, topic.table->row_type());
     if (!stream.channels.empty()) xdf::AppendHeader(stream, out_);
@@ -171,7 +199,7 @@ class XdfExporter {
 
   void Add(Outgoing& to, const mcap::Message& record, const pb::Message& message,
            const pb::Message* row, const CsvTable& table) {
-    const double time_s = TimeOf(record, row);
+    const double time_s = 1e-9 * static_cast<double>(to.times.Next(TimeOf(record, row)));
     if (to.extent.samples++ == 0) {
       to.extent.first_s = time_s;
       xdf::AppendClockOffset(to.stream, time_s, out_);
@@ -295,7 +323,9 @@ void AppendHeader(const Stream& stream, std::string& out) {
   if (!stream.note.empty()) xml += Element("note", stream.note);
   xml += "<channels>";
   for (const std::string& channel : stream.channels) {
-    xml += "<channel>" + Element("label", channel) + "</channel>";
+    const std::string unit = UnitOf(channel);
+    xml += "<channel>" + Element("label", channel) + (unit.empty() ? "" : Element("unit", unit)) +
+           Element("type", stream.type) + "</channel>";
   }
   xml += "</channels></desc></info>";
   AppendStreamChunk(Tag::kStreamHeader, stream.id, xml, out);

@@ -16,6 +16,7 @@ struct ExportedStream {
   std::string name;
   std::uint64_t channels = 0;
   std::uint64_t samples = 0;
+  std::uint64_t mended_times = 0;  ///< Samples that were given a later time (RisingTimes).
 };
 
 /// Result of an export to XDF.
@@ -28,7 +29,7 @@ struct ExportedXdf {
 /// stream for each topic and each device (or entry of a list) in it, with the columns of CsvTable
 /// that hold numbers, flags and enums; of the topic "events" a stream of texts. A sample's time is
 /// when the device took it, else that of its tick: seconds of the server host's monotonic clock.
-/// Errors as of ExportCsv().
+/// The times of each stream rise strictly. Errors as of ExportCsv().
 Result<ExportedXdf> ExportXdf(const std::string& recording, const std::string& folder,
                               bool replace);
 
@@ -43,9 +44,9 @@ namespace footing::log_client::xdf {
 struct Stream {
   std::uint32_t id = 0;  ///< From 1.
   std::string name;
-  std::string type;       ///< LSL's word for the content, such as "Markers"; free text.
+  std::string type;       ///< The content in XDF's words ("MoCap", "Markers", ...), or our own.
   std::string source_id;  ///< The same for the same source in every recording.
-  std::vector<std::string> channels;
+  std::vector<std::string> channels;  ///< Their units stand in their names (UnitOf).
   bool is_text = false;
   std::string note{};  ///< Remark in the stream's header; may be empty.
 };

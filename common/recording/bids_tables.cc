@@ -25,6 +25,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* kNotAvailable = "n/a";
 constexpr int kDecimals = 6;
+constexpr double kSteps = 1e6;  // In a unit, of that many decimals.
 
 }  // namespace
 
@@ -39,6 +40,15 @@ void AddVector(const std::string& name, const std::string& type, const std::stri
 
 void Append(std::initializer_list<double> values, MotionTable& table) {
   table.cells.insert(table.cells.end(), values);
+}
+
+double RisingTime(double time_s, MotionTable& table) {
+  if (table.cells.empty()) return time_s;
+  const double last_s = table.cells[table.cells.size() - table.channels.size()];
+  const double next = std::round(last_s * kSteps) + 1;
+  if (!(std::round(time_s * kSteps) < next)) return time_s;
+  ++table.mended_times;
+  return next / kSteps;
 }
 
 std::string Tsv(const std::vector<std::vector<std::string>>& rows) {
@@ -101,6 +111,12 @@ ordered_json MotionJson(const MotionTable& table, const std::string& task,
                        {"MotionChannelCount", table.channels.size()},
                        {"TrackedPointsCount", points.size()}};
   for (const auto& [type, count] : of_type) json[type + "ChannelCount"] = count;
+  if (table.mended_times > 0) {
+    json["MendedTimes"] = table.mended_times;
+    json["MendedTimesDescription"] =
+        "Samples whose time was not later than the one before, such as one that the device sent "
+        "twice; each has the earliest later time of the file";
+  }
   json.update(table.notes);
   return json;
 }
@@ -246,6 +262,7 @@ MotionTable* DeviceTables::Find(const std::string& point, const std::string& mak
     table.manufacturer = maker;
     table.channels.push_back(Latency());
   }
+  time_s_ = RisingTime(time_s_, table);
   return &table;
 }
 
@@ -287,7 +304,14 @@ void DeviceTables::AddStick(const stream::NunchukSample& one) {
 
 void DeviceTables::AddHand(const stream::HandSample& one) {
   if (one.role == stream::DeviceRole::kUnspecified) return;  // A joint of a skeleton.
-  MotionTable* table = Find(PointOf(one.rig, one.role), one.tracker, one.sampled_ns, "_tracked");
+  const std::string point = PointOf(one.rig, one.role);
+  std::string part = "_tracked";
+  // Another tracker of the same hand sees it in its own time.
+  const auto first = tables_.find(point + part);
+  if (first != tables_.end() && first->second.manufacturer != one.tracker) {
+    part += "_" + one.tracker;
+  }
+  MotionTable* table = Find(point, one.tracker, one.sampled_ns, part);
   if (table == nullptr) return;
   if (table->cells.empty()) {
     AddVector("position", "POS", point_, "m", *table);
@@ -399,14 +423,14 @@ void CharacterTables::Add(double time_s, const v1::Tick& tick) {
   const v1::Character& character = tick.characters().characters(0);
   if (character.has_body()) return AddBody(time_s, character);
   if (sim_.channels.empty()) sim_ = SimulationTable();
-  AddSimulation(time_s, character, sim_);
+  AddSimulation(RisingTime(time_s, sim_), character, sim_);
 }
 
 void CharacterTables::AddBody(double time_s, const v1::Character& character) {
   const bool fits = character.links_size() == skeleton_.links_size() && character.links_size() > 0;
   if (!fits || !character.body().calibrated()) return;
   if (body_.channels.empty()) body_ = BodyTable(skeleton_);
-  Append({time_s}, body_);
+  Append({RisingTime(time_s, body_)}, body_);
   for (const v1::LinkPose& link : character.links()) {
     const v1::Vector3& p = link.position_m();
     const v1::Quaternion& q = link.orientation();

@@ -36,6 +36,7 @@ struct MotionTable {
   std::vector<double> cells;  ///< Row by row, as many as channels; NaN: missing.
   /// More fields of motion.json.
   nlohmann::ordered_json notes = nlohmann::ordered_json::object();
+  std::size_t mended_times = 0;  ///< Rows whose time was not later than the one before.
 };
 
 /// The time of each row, s.
@@ -44,6 +45,9 @@ Channel Latency();
 void AddVector(const std::string& name, const std::string& type, const std::string& point,
                const std::string& units, MotionTable& table);
 void Append(std::initializer_list<double> values, MotionTable& table);
+/// The time of the next row of a table whose first channel is Latency(), s: this, or one step of
+/// the file's resolution behind the last row where it would not be later in the file.
+double RisingTime(double time_s, MotionTable& table);
 
 /// Something that happened at an instant.
 struct Event {

@@ -239,7 +239,7 @@ Result<void> SchemaPool::Add(const mcap::Schema& schema) {
   return {};
 }
 
-const pb::Message* SchemaPool::Parse(std::uint16_t schema_id, std::string_view bytes) {
+pb::Message* SchemaPool::Parse(std::uint16_t schema_id, std::string_view bytes) {
   const auto found = entries_.find(schema_id);
   if (found == entries_.end() || bytes.size() > kMostMessageBytes) return nullptr;
   pb::Message* message = found->second->message.get();

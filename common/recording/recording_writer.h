@@ -123,7 +123,7 @@ class SchemaPool {
 
   /// The message of these bytes; null when there is no schema of that id or they do not fit it.
   /// Owned by the pool and valid until the next call.
-  const google::protobuf::Message* Parse(std::uint16_t schema_id, std::string_view bytes);
+  google::protobuf::Message* Parse(std::uint16_t schema_id, std::string_view bytes);
 
  private:
   struct Entry;

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <vector>
 
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
@@ -16,7 +18,7 @@ namespace {
 std::string Rows(const CsvTable& table, const google::protobuf::Message& message) {
   std::string rows;
   table.AppendRows(
-      message, "", [](const auto*) { return ""; }, rows);
+      message, [](const auto*) { return ""; }, [](const auto*) { return ""; }, rows);
   return rows;
 }
 
@@ -92,6 +94,34 @@ TEST(CsvTable, TooManyColumnsAreRefused) {
   const Result<void> learned = table.Learn(skeletons);
   ASSERT_FALSE(learned.ok());
   EXPECT_EQ(learned.error().kind, ErrorKind::kInvalidData);
+}
+
+TEST(CsvTable, TheUnitOfAColumnStandsInItsName) {
+  for (const auto& [name, unit, last] : std::vector<std::array<const char*, 3>>{
+           {"specific_force_mps2_x", "m/s2", "specific_force_x_mps2"},
+           {"links_12_position_m_x", "m", "links_12_position_x_m"},
+           {"total_n", "N", "total_n"},
+           {"cop_x_m", "m", "cop_x_m"},
+           {"body_link_sd_m_3", "m", "body_link_sd_3_m"},
+           {"links_0_orientation_w", "", "links_0_orientation_w"},
+           {"n", "", "n"},
+           {"device", "", "device"}}) {
+    EXPECT_EQ(UnitOf(name), unit) << name;
+    EXPECT_EQ(UnitLast(name), last);
+    EXPECT_EQ(UnitOf(last), unit) << last;
+  }
+}
+
+TEST(CsvTable, AHashIsNoNumber) {
+  v1::CharacterFrame frame;
+  frame.set_state_hash(UINT64_MAX);
+  frame.set_step(7);
+  CsvTable table(*frame.GetDescriptor());
+  ASSERT_TRUE(table.Learn(frame).ok());
+  const auto names = table.NumberNames();
+  EXPECT_THAT(names, testing::Contains("step"));
+  EXPECT_THAT(names, testing::Not(testing::Contains("state_hash")));
+  EXPECT_EQ(table.Numbers(frame, nullptr).size(), names.size());
 }
 
 }  // namespace

@@ -4,7 +4,10 @@
 #include <xdf.h>
 
 #include <cmath>
+#include <sstream>
+#include <string>
 
+#include "clients/log/contents.h"
 #include "footing/v1/session.pb.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
@@ -44,13 +47,14 @@ TEST_F(ExportXdfTest, AnotherReaderFindsEverySampleWithItsTime) {
   ASSERT_EQ(xdf_.load_xdf(exported->path), 0);
   ASSERT_EQ(xdf_.streams.size(), exported->streams.size());
   const Xdf::Stream& motion = StreamNamed("footingd/motion/1");
-  EXPECT_EQ(motion.info.type, "motion");
+  EXPECT_EQ(motion.info.type, "Accelerometer");
   ASSERT_EQ(motion.time_stamps.size(), static_cast<std::size_t>(kSampleTicks));
   EXPECT_NEAR(motion.time_stamps[7], 0.07, 1e-9);  // Ticks of 10 ms.
   EXPECT_EQ(motion.info.sample_count, kSampleTicks);
   EXPECT_NEAR(motion.info.last_timestamp, 2.99, 1e-6);
   const std::size_t z = ChannelNamed(motion, "specific_force_mps2_z");
   EXPECT_FLOAT_EQ(motion.time_series[z][299], -9.80665f);
+  EXPECT_EQ(motion.info.channels[z].at("unit"), "m/s2");
   const std::size_t count = ChannelNamed(motion, "report_count");
   EXPECT_EQ(motion.time_series[count][299], 299);
 }
@@ -107,6 +111,106 @@ TEST_F(ExportXdfTest, EachDeviceIsAStreamUnderItsRoleAndEventsAreMarkers) {
   ASSERT_EQ(xdf_.eventMap.size(), 1u);
   EXPECT_EQ(xdf_.eventMap[0].first.first, "KIND_TASK: jump <high> & far");
   EXPECT_NEAR(xdf_.eventMap[0].first.second, 27, 1e-9);
+}
+
+/// As a version wrote it that dated hands of one burst by their arrival: back by 2.2 ms. A board
+/// sends a sample twice, a skeleton has several joints at once, two events are of one tick, and the
+/// server's present state comes before the older ticks of its ring, one of which has it, too.
+void WriteUnevenRecording(const std::string& path) {
+  test::MadeRecording recording(path);
+  recording.Begin("footingd", 6'000'000'000, 1'760'000'005'000'000'000);
+  const auto tick_at = [](std::uint64_t sequence, std::int64_t ms) {
+    v1::Tick tick;
+    tick.set_sequence(sequence);
+    tick.set_host_ns(ms * 1'000'000);
+    v1::DeviceStatus& status = *tick.mutable_status()->add_devices();
+    status.set_device(7);
+    status.set_role(v1::DEVICE_ROLE_LEFT_BOARD);
+    return tick;
+  };
+  recording.Add(tick_at(53, 7000));
+  recording.Add(tick_at(103, 7500));
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    v1::Tick tick = tick_at(50 + i, 6970 + 10 * static_cast<std::int64_t>(i));
+    for (int k = 0; k < 2; ++k) {
+      v1::HandSample& hand = *tick.mutable_hands()->add_samples();
+      hand.set_rig("main");
+      hand.set_role(v1::DEVICE_ROLE_LEFT_HAND);
+      hand.set_tracker("camera");
+      hand.set_confidence(1);
+      hand.set_sampled_ns(tick.host_ns() - 5'000'000 - 2'200'000 * k);
+      v1::HandSample& other = *tick.mutable_hands()->add_samples();
+      other = hand;
+      other.set_tracker("kinect");
+      other.set_sampled_ns(tick.host_ns() - 30'000'000 + 100 * k);
+      v1::HandSample& joint = *tick.mutable_hands()->add_samples();
+      joint = other;
+      joint.clear_role();
+      joint.set_joint(k == 0 ? v1::BODY_JOINT_HEAD : v1::BODY_JOINT_NECK);
+      joint.set_sampled_ns(tick.host_ns() - 30'000'000);
+      v1::BoardSample& board = *tick.mutable_boards()->add_samples();
+      board.set_device(7);
+      board.set_report_count(2 * i + static_cast<std::uint64_t>(k));
+      board.set_sampled_ns(tick.host_ns() - 3'000'000);
+      tick.mutable_events()->add_events()->set_kind(v1::Event::KIND_TASK);
+    }
+    recording.Add(tick);
+  }
+}
+
+TEST_F(ExportXdfTest, TheTimesOfEveryStreamRiseStrictly) {
+  WriteUnevenRecording(Path("a.mcap"));
+  const auto exported = ExportXdf(Path("a.mcap"), Path("out"), false);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  ASSERT_EQ(xdf_.load_xdf(exported->path), 0);
+  for (const Xdf::Stream& stream : xdf_.streams) {
+    for (std::size_t i = 1; i < stream.time_stamps.size(); ++i) {
+      ASSERT_GT(stream.time_stamps[i], stream.time_stamps[i - 1]) << stream.info.name << " " << i;
+    }
+  }
+  // A burst that goes back is mended; what each tracker sees keeps its own times.
+  const Xdf::Stream& left = StreamNamed("footingd/hands/main/left_hand");
+  ASSERT_EQ(left.time_stamps.size(), 8u);
+  EXPECT_NEAR(left.time_stamps[0], 6.965, 1e-9);
+  EXPECT_NEAR(left.time_stamps[1], 6.965 + 1e-6, 1e-9);
+  EXPECT_NEAR(StreamNamed("footingd/hands/main/left_hand_kinect").time_stamps.at(2), 6.95, 1e-9);
+  EXPECT_EQ(StreamNamed("footingd/hands/main/head").time_stamps.size(), 4u);
+  // The present state waits for the ring's older ticks; the one that both have is there once.
+  const auto& status = StreamNamed("footingd/status/left_board").time_stamps;
+  ASSERT_EQ(status.size(), 5u);
+  EXPECT_NEAR(status.front(), 6.97, 1e-9);
+  EXPECT_NEAR(status.back(), 7.5, 1e-9);
+  for (const ExportedStream& stream : exported->streams) {
+    const bool mended = stream.name == left.info.name || stream.name == "footingd/events" ||
+                        stream.name == "footingd/boards/left_board";
+    EXPECT_EQ(stream.mended_times, mended ? 4u : 0u) << stream.name;
+  }
+}
+
+TEST_F(ExportXdfTest, TheTimesOfTablesRiseStrictlyToo) {
+  WriteUnevenRecording(Path("a.mcap"));
+  const auto csv = ExportCsv(Path("a.mcap"), Path("csv"), false);
+  ASSERT_TRUE(csv.ok()) << csv.error().message;
+  for (const ExportedFile& file : *csv) {
+    const std::uint64_t mended =
+        file.topic == "/footingd/hands" || file.topic == "/footingd/boards" ? 4 : 0;
+    EXPECT_EQ(file.mended_times, mended) << file.topic;
+  }
+  EXPECT_THAT(Bytes(Path("csv/footingd_boards.csv")), HasSubstr(",6967001000,"));
+  const auto bids = ExportBids(Path("a.mcap"), Path("data"), {"01", "walk", false, "1.0"});
+  ASSERT_TRUE(bids.ok()) << bids.error().message;
+  ASSERT_FALSE(bids->tables.empty());
+  for (const ExportedTable& table : bids->tables) {
+    EXPECT_GE(table.samples, 2u) << table.path;  // Those from the first tick on.
+    std::istringstream lines(Bytes(table.path));
+    std::string line;
+    double last_s = -1;
+    while (std::getline(lines, line)) {
+      const double time_s = std::stod(line);
+      EXPECT_GT(time_s, last_s) << table.path;
+      last_s = time_s;
+    }
+  }
 }
 
 TEST_F(ExportXdfTest, NeverOverwritesUnlessToldAndRefusesACutRecording) {
