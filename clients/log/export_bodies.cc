@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 
+#include "clients/log/biped_person.h"
 #include "clients/log/contents.h"
 #include "common/base/text.h"
 #include "common/body/angle_deviation.h"
@@ -21,6 +22,8 @@
 #include "common/recording/recording_writer.h"
 #include "common/runtime/files.h"
 #include "common/virtual/motion/bvh.h"
+#include "common/virtual/motion/edit.h"
+#include "common/virtual/motion/gltf.h"
 #include "common/virtual/motion/joint_angles.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
@@ -113,23 +116,58 @@ std::string WithNote(std::string table, const std::string& note) {
   return table.insert(end, note + "\n");
 }
 
+/// Says to OpenSim's tools which columns of the forces act on which foot, at which point.
+std::string ExternalLoads(const std::string& name) {
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n"
+      "<ExternalLoads name=\"" +
+      name + "_loads\">\n<objects>\n";
+  for (const bool left : {false, true}) {
+    const std::string side = left ? "l" : "r";
+    xml += "<ExternalForce name=\"foot_" + side +
+           "\">\n<appliesForce>true</appliesForce>\n<applied_to_body>" +
+           joint_angles::OpenSimFoot(left) +
+           "</applied_to_body>\n<force_expressed_in_body>ground</force_expressed_in_body>\n"
+           "<point_expressed_in_body>ground</point_expressed_in_body>\n<force_identifier>"
+           "ground_force_" +
+           side + "_v</force_identifier>\n<point_identifier>ground_force_" + side +
+           "_p</point_identifier>\n<torque_identifier>ground_torque_" + side +
+           "_</torque_identifier>\n<data_source_name>Unassigned</data_source_name>\n"
+           "</ExternalForce>\n";
+  }
+  return xml + "</objects>\n<groups />\n<datafile>" + name +
+         "_grf.mot</datafile>\n</ExternalLoads>\n</OpenSimDocument>\n";
+}
+
 Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
                                         const std::vector<bool>& valid,
                                         const std::vector<FootForces>& forces,
-                                        const std::string& name) {
+                                        const std::string& name, const MotionGatherer& gatherer) {
   Result<motion::Table> angles = joint_angles::JointAngles(motion);
   if (!angles) return angles.error();
   angles->name = name + ".mot";
+  motion::Table table = ForceTable(forces, motion.rate_hz);
+  table.name = name + "_grf.mot";
+  if (gatherer.is_biped()) {  // Nothing about it is estimated, and a person's model is not its.
+    return std::vector<NamedText>{{angles->name, motion::WriteTable(*angles)},
+                                  {table.name, motion::WriteTable(table)}};
+  }
   motion::Table deviations = DeviationTable(*angles, valid);
   deviations.name = name + "_sd.sto";
   const std::string source(body::AngleDeviationSource());
-  motion::Table table = ForceTable(forces, motion.rate_hz);
-  table.name = name + "_grf.mot";
-  return std::vector<NamedText>{
+  std::vector<NamedText> texts{
       {angles->name, WithNote(motion::WriteTable(*angles),
                               "Angles are estimates: " + deviations.name + " has their " + source)},
       {table.name, motion::WriteTable(table)},
-      {deviations.name, WithNote(motion::WriteTable(deviations), source), true}};
+      {deviations.name, WithNote(motion::WriteTable(deviations), source), true},
+      {name + "_loads.xml", ExternalLoads(name), true}};
+  // Without a weight there is no model.
+  if (const auto person = gatherer.Person()) {
+    const auto model = joint_angles::OpenSimModel(motion, *person, name);
+    if (!model) return model.error();
+    texts.push_back({name + ".osim", *model, true});
+  }
+  return texts;
 }
 
 /// A motion, and which of its frames are valid.
@@ -152,10 +190,23 @@ Result<Gathered> Gather(const MotionGatherer& gatherer) {
 
 /// The files of one person, whose names begin with `name`.
 Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const Gathered& gathered,
-                                       BodyFormat format, const std::string& name) {
+                                       BodyFormat format, const std::string& name,
+                                       BvhSkeleton skeleton) {
   const auto& [motion, valid] = gathered;
   if (format == BodyFormat::kBvh) {
-    return std::vector<NamedText>{{name + ".bvh", motion::WriteBvh(motion)}};
+    if (skeleton == BvhSkeleton::kCmu) {
+      return std::vector<NamedText>{{name + ".bvh", motion::WriteBvh(motion)}};
+    }
+    const auto humanoid = motion::Humanoid(motion);
+    if (!humanoid) return humanoid.error();
+    return std::vector<NamedText>{{name + ".bvh", motion::WriteBvh(*humanoid)}};
+  }
+  if (format == BodyFormat::kGltf) {
+    const auto humanoid = motion::Humanoid(motion);
+    if (!humanoid) return humanoid.error();
+    const auto glb = motion::WriteGlb(*humanoid, name);
+    if (!glb) return glb.error();
+    return std::vector<NamedText>{{name + ".glb", *glb}};
   }
   if (format == BodyFormat::kTrc) {
     return std::vector<NamedText>{
@@ -163,7 +214,9 @@ Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const Gat
   }
   const auto forces = gatherer.Forces();
   if (!forces) return forces.error();
-  if (format == BodyFormat::kMot) return MotTexts(motion, valid, *forces, name);
+  if (format == BodyFormat::kMot) {
+    return MotTexts(motion, valid, *forces, name, gatherer);
+  }
   const auto c3d = motion::WriteC3d(ToC3d(motion, valid, *forces));
   if (!c3d) return c3d.error();
   return std::vector<NamedText>{{name + ".c3d", *c3d}};
@@ -183,12 +236,21 @@ class Walker {
     };
     const mcap::WalkEnd end = mcap::Walk(bytes, visitor, mcap::WalkMode::kStrict);
     if (const std::optional<Error> incomplete = Incomplete(path, end)) return *incomplete;
-    if (damaged_) return InvalidData(path + ": a message of the pose engine cannot be read");
+    if (damaged_) return InvalidData(path + ": a message of footing-sim cannot be read");
+    for (auto& [index, biped] : bipeds_) {
+      const auto person = BipedPerson::Of(biped.skeleton, biped.longest_leg_m);
+      if (!person) continue;  // It has no frame.
+      gatherers_[index] = MotionGatherer(person->Skeleton(), /*is_biped=*/true);
+      for (const auto& [frame, log_ns] : biped.frames) {
+        gatherers_[index].Add(person->Frame(frame), log_ns);
+      }
+      biped.frames.clear();
+    }
     std::erase_if(gatherers_, [](const MotionGatherer& gatherer) { return gatherer.empty(); });
     if (gatherers_.empty()) {
       return InvalidData(path +
-                         " has no reconstructed body after its T-pose: record footing-sim "
-                         "--engine pose");
+                         " has no frame of the biped and no reconstructed body after its T-pose: "
+                         "record footing-sim");
     }
     return std::move(gatherers_);
   }
@@ -205,9 +267,20 @@ class Walker {
       if (text == last_skeleton_) return;  // A snapshot after a broken link.
       last_skeleton_ = text;
       gatherers_.emplace_back(skeletons.skeletons(0));
+      if (BipedPerson::IsBiped(skeletons.skeletons(0))) {
+        bipeds_[gatherers_.size() - 1].skeleton = skeletons.skeletons(0);
+      }
     } else if (topic == "characters" && !gatherers_.empty()) {
       v1::CharacterFrame frame;
       if (!Parse(message, frame)) return;
+      const auto biped = bipeds_.find(gatherers_.size() - 1);
+      if (biped != bipeds_.end()) {
+        if (frame.characters_size() == 0) return;
+        const double leg_m = BipedPerson::LongestLegM(biped->second.skeleton, frame.characters(0));
+        biped->second.longest_leg_m = std::max(biped->second.longest_leg_m, leg_m);
+        biped->second.frames.emplace_back(std::move(frame), message.log_time_ns);
+        return;
+      }
       NextSubject(frame);
       gatherers_.back().Add(frame, message.log_time_ns);
     }
@@ -234,7 +307,15 @@ class Walker {
   }
 
   std::map<std::uint16_t, std::string> topics_;
+  /// Frames of a biped, whose longest leg is known at their end.
+  struct Biped {
+    v1::Skeleton skeleton;
+    double longest_leg_m = 0;
+    std::vector<std::pair<v1::CharacterFrame, std::uint64_t>> frames;
+  };
+
   std::vector<MotionGatherer> gatherers_;
+  std::map<std::size_t, Biped> bipeds_;  ///< By place in `gatherers_`.
   std::string last_skeleton_, subject_;
   std::uint64_t first_ns_ = UINT64_MAX;
   bool has_subject_ = false;
@@ -245,7 +326,7 @@ class Walker {
 
 Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
                                                  const std::string& folder, BodyFormat format,
-                                                 bool replace) {
+                                                 bool replace, BvhSkeleton skeleton) {
   Result<recording::MappedFile> file = recording::MappedFile::Open(recording);
   if (!file) return file.error();
   Walker walker;
@@ -258,11 +339,15 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
     const auto gathered = Gather(gatherer);
     if (!gathered) return InvalidData(recording + ": " + gathered.error().message);
     const std::string code = gatherer.subject().empty() ? "" : "_" + gatherer.subject();
-    const std::string name = "pose_" + std::to_string(++people) + code;
-    auto texts = Written(gatherer, *gathered, format, name);
+    const bool is_biped = gatherer.is_biped();
+    const std::string name = (is_biped ? "gait_" : "pose_") + std::to_string(++people) + code;
+    auto texts = Written(gatherer, *gathered, format, name, skeleton);
     if (!texts) return InvalidData(recording + ": " + texts.error().message);
-    texts->push_back({name + "_errors.csv", ErrorsCsv(), true});
-    const std::string errors = folder + "/" + texts->back().name;
+    std::string errors;
+    if (!is_biped) {
+      texts->push_back({name + "_errors.csv", ErrorsCsv(), true});
+      errors = folder + "/" + texts->back().name;
+    }
     for (const NamedText& one : *texts) {
       const std::string path = folder + "/" + one.name;
       if (one.is_note) {  // The export of another format may have written it.
@@ -392,20 +477,22 @@ constexpr double kMostRateHz = 1000;
 constexpr double kMostLagS = 10;
 constexpr double kMostRowsPerFrame = 100;  // Limit on rows that fill gaps between frames.
 
-Eigen::Vector3d PlaceOf(const v1::Character& character, int link) {
-  return wire::FromProto(character.links(link).position_m());
-}
-
-Eigen::Matrix3d TurnOf(const v1::Character& character, int link) {
-  return wire::FromProto(character.links(link).orientation()).normalized().toRotationMatrix();
-}
-
 bool HasChild(const v1::Skeleton& skeleton, int link) {
   return std::any_of(skeleton.links().begin(), skeleton.links().end(),
                      [link](const v1::Link& other) { return other.parent() == link; });
 }
 
-/// All joints turn about z, x, y of W's axes at rest, as BVH files mostly do; ends do not turn.
+/// Whether the load of a foot is of this frame. Without both boards the engine repeats the last
+/// loads of both feet, while each insole counts on its own.
+bool IsFresh(const v1::BodyState& body, int side) {
+  const auto measured = [&body](int foot) {
+    return foot >= body.feet_told_size() || body.feet_told(foot);
+  };
+  return measured(side) && (body.contact_source() == "insoles" || measured(1 - side));
+}
+
+}  // namespace
+
 Result<body::Skeleton> SkeletonOf(const v1::Skeleton& skeleton, const v1::Character& first) {
   std::vector<body::Joint> joints;
   for (int i = 0; i < skeleton.links_size(); ++i) {
@@ -427,15 +514,6 @@ Result<body::Skeleton> SkeletonOf(const v1::Skeleton& skeleton, const v1::Charac
   return body::MakeSkeleton(std::move(joints));
 }
 
-/// Whether the load of a foot is of this frame. Without both boards the engine repeats the last
-/// loads of both feet, while each insole counts on its own.
-bool IsFresh(const v1::BodyState& body, int side) {
-  const auto measured = [&body](int foot) {
-    return foot >= body.feet_told_size() || body.feet_told(foot);
-  };
-  return measured(side) && (body.contact_source() == "insoles" || measured(1 - side));
-}
-
 void SetPose(const body::Skeleton& skeleton, const v1::Character& character,
              Eigen::Ref<Eigen::VectorXd> q) {
   q.head<3>() = PlaceOf(character, 0);
@@ -450,8 +528,6 @@ void SetPose(const body::Skeleton& skeleton, const v1::Character& character,
   }
 }
 
-}  // namespace
-
 void MotionGatherer::Add(const v1::CharacterFrame& frame, std::uint64_t log_time_ns) {
   if (frame.characters_size() == 0) return;
   const v1::Character& character = frame.characters(0);
@@ -464,6 +540,16 @@ void MotionGatherer::Add(const v1::CharacterFrame& frame, std::uint64_t log_time
   }
   if (frames_.empty()) begin_ns_ = log_time_ns;
   frames_.push_back(frame);
+}
+
+std::optional<body::PersonParameters> MotionGatherer::Person() const {
+  if (frames_.empty()) return std::nullopt;
+  const v1::BodyState& body = frames_.back().characters(0).body();
+  if (!(body.mass_kg() > 0)) return std::nullopt;
+  body::PersonParameters person;
+  person.mass_kg = body.mass_kg();
+  if (body.height_m() > 0) person.height_m = body.height_m();
+  return person;
 }
 
 double MotionGatherer::lag_s() const {

@@ -3,12 +3,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "common/base/result.h"
+#include "common/body/body.h"
+#include "common/body/skeleton.h"
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
@@ -16,15 +19,16 @@
 
 namespace footing::log_client {
 
-/// One person's movement, from when their T-pose was taken.
+/// One person's movement, from when their T-pose was taken, or the biped's.
 struct ExportedMotion {
   std::string path;
   std::string subject;  ///< Code; empty where nobody was named.
   std::uint64_t frames = 0;
   std::uint64_t invalid_frames = 0;  ///< Part of `frames` reported not valid by the engine.
   double rate_hz = 0;
-  double begin_s = 0;        ///< Its first frame, from the recording's first message on.
-  std::string angle_errors;  ///< The file with the stated errors of this person's angles.
+  double begin_s = 0;  ///< Its first frame, from the recording's first message on.
+  /// The file with the stated errors of this person's angles; empty for the biped's.
+  std::string angle_errors;
 };
 
 /// The joints of every frame, in the axes of TRC files (OpenSim: x ahead, y up, z right), from 0 s.
@@ -33,15 +37,24 @@ motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector
 
 /// File format of an exported body.
 enum class BodyFormat {
-  kBvh,  ///< Skeleton and rotations.
-  kTrc,  ///< Places of the joints.
-  kMot,  ///< Angles of the joints, and in a second file the forces under the feet.
-  kC3d,  ///< Places of the joints and the forces under the feet.
+  kBvh,   ///< Skeleton and rotations.
+  kTrc,   ///< Places of the joints.
+  kMot,   ///< Angles of the joints, and in a second file the forces under the feet.
+  kC3d,   ///< Places of the joints and the forces under the feet.
+  kGltf,  ///< An animated figure that rests in a T-pose (motion::Humanoid).
+};
+
+/// How the skeleton of a BVH file is named and rests.
+enum class BvhSkeleton {
+  kCmu,       ///< As recorded: joints named as CMU's, thighs 20 degrees apart at rest.
+  kHumanoid,  ///< A T-pose, and the names of Unity's human bones (motion::Humanoid).
 };
 
 /// Writes a file for each subject of a recording of the pose engine into `folder`:
-/// "pose_1_p07.bvh", ...; of kMot "pose_1_p07.mot" and "pose_1_p07_grf.mot". A recording without
-/// one is InvalidData; an existing file is a usage error, unless `replace`.
+/// "pose_1_p07.bvh", ...; of kMot "pose_1_p07.mot" and "pose_1_p07_grf.mot", and what OpenSim's
+/// tools need besides: "pose_1_p07_loads.xml" and the scaled model "pose_1_p07.osim". Of the gait
+/// engine it writes the biped as a person (BipedPerson): "gait_1.bvh". A recording without either
+/// is InvalidData; an existing file is a usage error, unless `replace`.
 ///
 /// Beside them stand the stated standard deviations of the angles: "pose_1_p07_errors.csv" for each
 /// coordinate, and with kMot "pose_1_p07_sd.sto" with the columns and times of the angles.
@@ -50,7 +63,8 @@ enum class BodyFormat {
 /// cannot have one, keep the pose.
 Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
                                                  const std::string& folder, BodyFormat format,
-                                                 bool replace);
+                                                 bool replace,
+                                                 BvhSkeleton skeleton = BvhSkeleton::kCmu);
 
 // Forces under the feet of a reconstructed body, a table for OpenSim (.mot). Axes: x ahead, y up,
 // z right.
@@ -79,13 +93,23 @@ motion::Table ForceTable(const std::vector<FootForces>& forces, double rate_hz);
 motion::C3d ToC3d(const motion::Motion& motion, const std::vector<bool>& valid,
                   const std::vector<FootForces>& forces);
 
+/// The skeleton of a frame, with the lengths that it has there. All joints turn about z, x, y of
+/// W's axes at rest, as BVH files mostly do; ends do not turn. InvalidData where its links are not
+/// a tree.
+Result<body::Skeleton> SkeletonOf(const v1::Skeleton& skeleton, const v1::Character& first);
+/// The pose of a frame on that skeleton: of equal angles those nearest to what stands in `q`.
+void SetPose(const body::Skeleton& skeleton, const v1::Character& character,
+             Eigen::Ref<Eigen::VectorXd> q);
+
 /// Gathers frames of one reconstructed body into a motion.
 ///
 /// Lengths are those of the first frame taken (links are rigid); every joint turns about three
 /// axes. Frames before the T-pose are left out; where a frame is missing the one before stands.
 class MotionGatherer {
  public:
-  explicit MotionGatherer(const v1::Skeleton& skeleton) : skeleton_(skeleton) {}
+  /// `is_biped`: the poses are those of BipedPerson, simulated and not estimated.
+  explicit MotionGatherer(const v1::Skeleton& skeleton, bool is_biped = false)
+      : skeleton_(skeleton), is_biped_(is_biped) {}
 
   void Add(const v1::CharacterFrame& frame, std::uint64_t log_time_ns = 0);
   /// Nothing where no frame was taken. InvalidData where frames and skeleton do not fit, or time
@@ -99,6 +123,9 @@ class MotionGatherer {
   Result<std::vector<bool>> Valid() const;
   bool empty() const { return frames_.empty(); }
   const std::string& subject() const { return subject_; }
+  bool is_biped() const { return is_biped_; }
+  /// Mass and height as the engine reported them last; nothing without a weight.
+  std::optional<body::PersonParameters> Person() const;
   /// Lag of a pose behind its frame, s.
   double lag_s() const;
   /// Log time of the first frame taken.
@@ -113,6 +140,7 @@ class MotionGatherer {
   Result<Grid> MakeGrid() const;
 
   v1::Skeleton skeleton_;
+  bool is_biped_ = false;
   std::vector<v1::CharacterFrame> frames_;
   std::string subject_;
   std::uint64_t begin_ns_ = 0;

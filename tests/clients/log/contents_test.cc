@@ -1,11 +1,16 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <Eigen/Geometry>
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
 #include <nlohmann/json.hpp>
 
 #include "clients/log/contents.h"
@@ -76,6 +81,8 @@ class AngleErrorsTest : public TemporaryFolder {
     character.set_valid(i < 3);
     character.mutable_body()->set_calibrated(true);
     character.mutable_body()->set_subject("p07");
+    character.mutable_body()->set_mass_kg(75);
+    character.mutable_body()->set_height_m(1.75);
     for (std::size_t joint = 0; joint < at_.p_WJ.size(); ++joint) {
       *character.add_links() =
           wire::ToProto(stream::LinkPose{at_.p_WJ[joint], Eigen::Quaterniond(at_.R_WJ[joint])});
@@ -127,6 +134,155 @@ TEST_F(AngleErrorsTest, AMotHasATableWithADeviationForEachAngle) {
   }
 }
 
+/// Reads a model by OpenSim's rules and moves it: places of its markers, in OpenSim's axes.
+class OpenSimReader {
+ public:
+  using Tree = boost::property_tree::ptree;
+
+  static Tree Parse(const std::string& text) {
+    std::istringstream stream(text);
+    Tree tree;
+    boost::property_tree::read_xml(stream, tree, boost::property_tree::xml_parser::trim_whitespace);
+    EXPECT_EQ(tree.get<int>("OpenSimDocument.<xmlattr>.Version"), 40000);
+    return tree;
+  }
+
+  explicit OpenSimReader(const std::string& text)
+      : model_(Parse(text).get_child("OpenSimDocument.Model")) {
+    for (const auto& [type, body] : model_.get_child("BodySet.objects")) {
+      EXPECT_EQ(type, "Body");
+      EXPECT_TRUE(bodies.insert(NameOf(body)).second) << NameOf(body);
+      mass_kg += body.get<double>("mass");
+      const auto inertia = NumbersOf(body.get<std::string>("inertia"), 6);
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_GT(inertia[i], 0) << NameOf(body);
+        EXPECT_LE(inertia[i], inertia[(i + 1) % 3] + inertia[(i + 2) % 3] + 1e-7) << NameOf(body);
+      }
+    }
+    for (const auto& [type, joint] : model_.get_child("JointSet.objects")) {
+      EXPECT_EQ(type, "CustomJoint");
+      for (const auto& [kind, one] : joint.get_child("coordinates")) {
+        EXPECT_TRUE(coordinates.insert(NameOf(one)).second) << NameOf(one);
+      }
+    }
+  }
+
+  static std::string NameOf(const Tree& tree) { return tree.get<std::string>("<xmlattr>.name"); }
+  static std::vector<double> NumbersOf(const std::string& text, std::size_t count) {
+    std::istringstream stream(text);
+    std::vector<double> numbers{std::istream_iterator<double>(stream), {}};
+    EXPECT_TRUE(stream.eof()) << text;
+    EXPECT_EQ(numbers.size(), count) << text;
+    numbers.resize(count);
+    return numbers;
+  }
+  static Eigen::Vector3d VectorOf(const std::string& text) {
+    return Eigen::Vector3d(NumbersOf(text, 3).data());
+  }
+
+  /// `values`: rad and m, by coordinate.
+  std::map<std::string, Eigen::Vector3d> Markers(
+      const std::map<std::string, double>& values) const {
+    std::map<std::string, Eigen::Isometry3d> at{{"/ground", Eigen::Isometry3d::Identity()}};
+    for (const auto& [type, joint] : model_.get_child("JointSet.objects")) {
+      std::map<std::string, std::pair<std::string, Eigen::Isometry3d>> frames;
+      for (const auto& [kind, frame] : joint.get_child("frames")) {
+        EXPECT_EQ(kind, "PhysicalOffsetFrame");
+        Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();
+        offset.translation() = VectorOf(frame.get<std::string>("translation"));
+        EXPECT_EQ(VectorOf(frame.get<std::string>("orientation")), Eigen::Vector3d(0, 0, 0));
+        frames[NameOf(frame)] = {frame.get<std::string>("socket_parent"), offset};
+      }
+      const auto parent = frames.at(joint.get<std::string>("socket_parent_frame"));
+      const auto child = frames.at(joint.get<std::string>("socket_child_frame"));
+      EXPECT_TRUE(at.count(parent.first) == 1) << "no body " << parent.first << " before its child";
+      EXPECT_TRUE(at.count(child.first) == 0) << child.first << " has two parents";
+      Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+      for (const auto& [kind, axis] : joint.get_child("SpatialTransform")) {
+        const auto name = axis.get<std::string>("coordinates");
+        if (name.empty()) continue;
+        const double value = values.at(name);
+        const Eigen::Vector3d along = VectorOf(axis.get<std::string>("axis"));
+        EXPECT_EQ(axis.get<std::string>("LinearFunction.coefficients"), "1 0");
+        if (NameOf(axis).starts_with("rotation")) {
+          moved.rotate(Eigen::AngleAxisd(value, along));
+        } else {
+          moved.translation() += value * along;
+        }
+      }
+      at[child.first] = at[parent.first] * parent.second * moved * child.second.inverse();
+    }
+    EXPECT_EQ(at.size(), bodies.size() + 1) << "a body without a joint";
+    std::map<std::string, Eigen::Vector3d> markers;
+    for (const auto& [type, marker] : model_.get_child("MarkerSet.objects")) {
+      markers[NameOf(marker)] = at.at(marker.get<std::string>("socket_parent_frame")) *
+                                VectorOf(marker.get<std::string>("location"));
+    }
+    return markers;
+  }
+
+  std::set<std::string> bodies, coordinates;
+  double mass_kg = 0;
+
+ private:
+  Tree model_;
+};
+
+TEST_F(AngleErrorsTest, AMotHasAModelThatMovesItsMarkersToTheJoints) {
+  const auto exported = ExportBodies(Path("walk.mcap"), Path("out"), BodyFormat::kMot, false);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  const OpenSimReader model(Bytes(Path("out/pose_1_p07.osim")));
+  EXPECT_NEAR(model.mass_kg, 75, 1e-6);
+  const auto angles = motion::ParseTable(Bytes(Path("out/pose_1_p07.mot")), "a.mot");
+  ASSERT_TRUE(angles.ok()) << angles.error().message;
+  EXPECT_EQ(model.coordinates,
+            std::set<std::string>(angles->columns.begin() + 1, angles->columns.end()));
+  for (int frame = 0; frame < kFrames; ++frame) {
+    std::map<std::string, double> values;
+    for (std::size_t i = 1; i < angles->columns.size(); ++i) {
+      const std::string& name = angles->columns[i];
+      const double value = angles->values(frame, static_cast<Eigen::Index>(i));
+      values[name] =
+          name.starts_with("pelvis_t") && name != "pelvis_tilt" ? value : DegreesToRadians(value);
+    }
+    const auto markers = model.Markers(values);
+    (void)FrameAt(frame);  // Moves at_.
+    ASSERT_EQ(markers.size(), at_.p_WJ.size());
+    for (std::size_t i = 0; i < at_.p_WJ.size(); ++i) {
+      const Eigen::Vector3d& p = at_.p_WJ[i];
+      EXPECT_LT(
+          (markers.at(skeleton_.joints[i].name) - Eigen::Vector3d(p.x(), p.z(), -p.y())).norm(),
+          1e-4)
+          << frame << " " << skeleton_.joints[i].name;
+    }
+  }
+}
+
+TEST_F(AngleErrorsTest, ItsExternalLoadsNameColumnsAndBodiesThatAreThere) {
+  ASSERT_TRUE(ExportBodies(Path("walk.mcap"), Path("out"), BodyFormat::kMot, false).ok());
+  const OpenSimReader model(Bytes(Path("out/pose_1_p07.osim")));
+  const auto loads = OpenSimReader::Parse(Bytes(Path("out/pose_1_p07_loads.xml")))
+                         .get_child("OpenSimDocument.ExternalLoads");
+  const auto file = loads.get<std::string>("datafile");
+  const auto forces = motion::ParseTable(Bytes(Path("out/" + file)), file);
+  ASSERT_TRUE(forces.ok()) << forces.error().message;
+  std::set<std::string> loaded;
+  for (const auto& [type, force] : loads.get_child("objects")) {
+    ASSERT_EQ(type, "ExternalForce");
+    loaded.insert(force.get<std::string>("applied_to_body"));
+    EXPECT_EQ(force.get<std::string>("force_expressed_in_body"), "ground");
+    EXPECT_EQ(force.get<std::string>("point_expressed_in_body"), "ground");
+    for (const char* part : {"force", "point", "torque"}) {
+      for (const char* axis : {"x", "y", "z"}) {
+        const auto column = force.get<std::string>(std::string(part) + "_identifier") + axis;
+        EXPECT_GE(motion::FindColumn(*forces, column), 0) << column;
+      }
+    }
+  }
+  EXPECT_EQ(loaded, (std::set<std::string>{"calcn_l", "calcn_r"}));
+  for (const std::string& body : loaded) EXPECT_EQ(model.bodies.count(body), 1u);
+}
+
 TEST_F(AngleErrorsTest, EveryFormatHasAFileOfErrorsBesideIt) {
   for (const BodyFormat format : {BodyFormat::kBvh, BodyFormat::kTrc, BodyFormat::kC3d}) {
     const auto exported = ExportBodies(Path("walk.mcap"), Path("out"), format, false);
@@ -162,6 +318,35 @@ TEST_F(AngleErrorsTest, ACsvHasAColumnForTheOrientationOfEachLink) {
   EXPECT_NEAR(std::stod(Cells(text, 1).at(index)), DegreesToRadians(shank_deg), 1e-3);
   const std::vector<std::string> invalid = Cells(text, kFrames);
   EXPECT_TRUE(invalid.size() <= index || invalid[index].empty());
+}
+
+TEST_F(AngleErrorsTest, ATidyTableIsNamedByJointAndHasACodebook) {
+  const auto exported = ExportCsv(Path("walk.mcap"), Path("tidy"), false, /*tidy=*/true);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  EXPECT_EQ(exported->back().path, Path("tidy/codebook.json"));
+  const std::string text = Bytes(Path("tidy/footing-sim_characters.csv"));
+  const std::vector<std::string> names = Cells(text, 0);
+  EXPECT_EQ(names.at(0), "time_s");
+  const auto column = std::find(names.begin(), names.end(), "ltibia_position_z_m");
+  ASSERT_NE(column, names.end());
+  EXPECT_THAT(names, testing::Each(testing::Not(HasSubstr("links_"))));
+  const auto knee = static_cast<std::size_t>(body::FindJoint(skeleton_, "ltibia"));
+  for (int i = 0; i < kFrames; ++i) {
+    const std::vector<std::string> cells = Cells(text, static_cast<std::size_t>(1 + i));
+    EXPECT_NEAR(std::stod(cells.at(0)), 0.01 + 0.01 * i, 1e-9);  // The skeleton came at 0 s.
+    (void)FrameAt(i);
+    EXPECT_NEAR(std::stod(cells.at(static_cast<std::size_t>(column - names.begin()))),
+                at_.p_WJ[knee].z(), 5e-7);
+  }
+  // Every column is in the codebook, and nothing else.
+  const auto book = nlohmann::ordered_json::parse(Bytes(Path("tidy/codebook.json")));
+  std::vector<std::string> described;
+  for (const auto& [name, entry] : book["footing-sim_characters.csv"].items()) {
+    described.push_back(name);
+  }
+  EXPECT_EQ(described, names);
+  EXPECT_EQ(book["footing-sim_characters.csv"]["ltibia_position_z_m"]["unit"], "m");
+  EXPECT_EQ(book["footing-sim_characters.csv"]["valid"]["type"], "flag");
 }
 
 TEST_F(AngleErrorsTest, BidsAndXdfSayIt) {

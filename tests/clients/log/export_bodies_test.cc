@@ -2,7 +2,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/table.h"
 #include "common/wire/wire.h"
+#include "tests/clients/log/temporary_folder.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::log_client {
@@ -399,6 +402,118 @@ TEST(ForceTable, IsReadAgainAsTheForcesOfTwoPlates) {
   EXPECT_LT((left.force_W.col(1) - Vector3d(0, 0, 300)).norm(), 1e-12);
   EXPECT_LT((left.cop_W.col(1) - Vector3d(0.1, 0.2, 0.05)).norm(), 1e-12);
   EXPECT_EQ(left.force_W.col(2), Vector3d::Zero());
+}
+
+/// A biped that walks ahead, turned to the left by 0.5 rad, on legs of changing length.
+v1::CharacterFrame BipedFrame(int i) {
+  v1::CharacterFrame frame;
+  frame.set_time_s(0.01 * i);
+  v1::Character& character = *frame.add_characters();
+  character.set_valid(true);
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.5, Vector3d::UnitZ()));
+  const Vector3d body(0.02 * i, 0.3, 0.95);
+  *character.add_links() = wire::ToProto(stream::LinkPose{body, turned});
+  for (const double side : {1.0, -1.0}) {
+    const Vector3d hip = body + turned * Vector3d(0, 0.1 * side, 0);
+    const Eigen::Quaterniond swung =
+        turned * Eigen::AngleAxisd(0.3 * side * std::sin(0.1 * i), Vector3d::UnitY());
+    const double leg_m = 0.9 + 0.05 * side * std::cos(0.1 * i);
+    *character.add_links() = wire::ToProto(stream::LinkPose{hip, swung});
+    *character.add_links() =
+        wire::ToProto(stream::LinkPose{hip - swung * Vector3d(0, 0, leg_m - 0.4), swung});
+    v1::Contact& contact = *character.add_contacts();
+    contact.set_touching(side > 0);
+    contact.set_normal_force_n(side > 0 ? 700 : 0);
+    const Vector3d foot = hip - swung * Vector3d(0, 0, leg_m);
+    contact.mutable_position_m()->set_x(foot.x());
+    contact.mutable_position_m()->set_y(foot.y());
+  }
+  return frame;
+}
+
+class BipedExportTest : public TemporaryFolder {
+ protected:
+  static constexpr int kFrames = 40;
+  BipedExportTest() {
+    auto writer = recording::RecordingWriter::Create(Path("gait.mcap"), {"test", false, {}});
+    v1::Skeletons skeletons;
+    v1::Skeleton& skeleton = *skeletons.add_skeletons();
+    skeleton.set_name("bird");
+    for (const auto& [name, parent, height_m] :
+         std::vector<std::tuple<std::string, int, double>>{{"body", -1, 0.2},
+                                                           {"left_hip", 0, 0.4},
+                                                           {"left_knee", 1, 0.8},
+                                                           {"right_hip", 0, 0.4},
+                                                           {"right_knee", 3, 0.8}}) {
+      v1::Link& link = *skeleton.add_links();
+      link.set_name(name);
+      link.set_parent(parent);
+      link.mutable_size_m()->set_z(height_m);
+    }
+    FOOTING_CHECK(writer->Write("/footing-sim/skeletons", skeletons, {0, 0, 0}).ok());
+    for (int i = 0; i < kFrames; ++i) {
+      const recording::Stamp stamp{10'000'000ll * i, 0, static_cast<std::uint32_t>(i)};
+      FOOTING_CHECK(writer->Write("/footing-sim/characters", BipedFrame(i), stamp).ok());
+    }
+    FOOTING_CHECK(writer->Finish().ok());
+  }
+
+  std::vector<ExportedMotion> Export(BodyFormat format, BvhSkeleton skeleton = BvhSkeleton::kCmu) {
+    const auto exported =
+        ExportBodies(Path("gait.mcap"), Path("out"), format, /*replace=*/true, skeleton);
+    EXPECT_TRUE(exported.ok()) << exported.error().message;
+    return exported ? *exported : std::vector<ExportedMotion>();
+  }
+};
+
+TEST_F(BipedExportTest, ItsHipsAndAnklesAreWhereTheSimulationHasHipsAndFeet) {
+  for (const auto skeleton : {BvhSkeleton::kCmu, BvhSkeleton::kHumanoid}) {
+    const auto exported = Export(BodyFormat::kBvh, skeleton);
+    ASSERT_EQ(exported.size(), 1u);
+    EXPECT_EQ(exported[0].path, Path("out/gait_1.bvh"));
+    EXPECT_EQ(exported[0].angle_errors, "") << "nothing about a simulation is estimated";
+    const auto motion = motion::ParseBvh(Bytes(exported[0].path), "gait_1.bvh");
+    ASSERT_TRUE(motion.ok()) << motion.error().message;
+    ASSERT_EQ(motion->frames(), kFrames);
+    const bool is_cmu = skeleton == BvhSkeleton::kCmu;
+    const int hip = body::FindJoint(motion->skeleton, is_cmu ? "lfemur" : "LeftUpperLeg");
+    const int knee = body::FindJoint(motion->skeleton, is_cmu ? "ltibia" : "LeftLowerLeg");
+    const int ankle = body::FindJoint(motion->skeleton, is_cmu ? "lfoot" : "LeftFoot");
+    ASSERT_GE(ankle, 0);
+    body::Kinematics at(motion->skeleton);
+    for (int i = 0; i < kFrames; ++i) {
+      body::ComputeKinematics(motion->skeleton, motion->q.col(i), at);
+      const v1::CharacterFrame biped = BipedFrame(i);
+      const auto place = [&](int joint) { return at.p_WJ[static_cast<std::size_t>(joint)]; };
+      const v1::Character& character = biped.characters(0);
+      EXPECT_LT((place(hip) - wire::FromProto(character.links(1).position_m())).norm(), 1e-4) << i;
+      const Vector3d foot = wire::FromProto(character.contacts(0).position_m());
+      EXPECT_LT((place(ankle) - foot).head<2>().norm(), 1e-4) << i;
+      const Vector3d leg = place(ankle) - place(hip), thigh = place(knee) - place(hip);
+      const Vector3d ahead(std::cos(0.5), std::sin(0.5), 0);
+      EXPECT_GT((thigh - leg * thigh.dot(leg) / leg.squaredNorm()).dot(ahead), 0)
+          << "its knees bend forwards";
+    }
+  }
+}
+
+TEST_F(BipedExportTest, EveryFormatOfBodiesHasIt) {
+  EXPECT_EQ(Export(BodyFormat::kTrc).at(0).frames, static_cast<std::uint64_t>(kFrames));
+  const auto mot = Export(BodyFormat::kMot);
+  ASSERT_EQ(mot.size(), 2u);
+  const auto angles = motion::ParseTable(Bytes(mot[0].path), "gait_1.mot");
+  ASSERT_TRUE(angles.ok()) << angles.error().message;
+  EXPECT_NEAR(angles->values(5, motion::FindColumn(*angles, "pelvis_rotation")), 0.5 * 180 / M_PI,
+              1e-3);
+  EXPECT_GT(angles->values(5, motion::FindColumn(*angles, "knee_angle_r")), 5);
+  const auto forces = motion::ParseTable(Bytes(Path("out/gait_1_grf.mot")), "grf");
+  ASSERT_TRUE(forces.ok()) << forces.error().message;
+  EXPECT_EQ(forces->values(5, motion::FindColumn(*forces, "ground_force_l_vy")), 700);
+  EXPECT_EQ(forces->values(5, motion::FindColumn(*forces, "ground_force_r_vy")), 0);
+  EXPECT_FALSE(std::filesystem::exists(Path("out/gait_1_errors.csv")));
+  const std::string c3d = Bytes(Export(BodyFormat::kC3d).at(0).path);
+  EXPECT_TRUE(
+      motion::ParseC3d(std::vector<std::uint8_t>(c3d.begin(), c3d.end()), "gait_1.c3d").ok());
 }
 
 }  // namespace
