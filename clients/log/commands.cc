@@ -18,6 +18,7 @@
 #include "clients/log/contents.h"
 #include "clients/log/export_bodies.h"
 #include "clients/log/export_xdf.h"
+#include "clients/log/osc_out.h"
 #include "common/base/json_text.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
@@ -101,12 +102,13 @@ std::optional<BodyFormat> BodyFormatOf(const std::string& format) {
   if (format == "trc") return BodyFormat::kTrc;
   if (format == "mot") return BodyFormat::kMot;
   if (format == "c3d") return BodyFormat::kC3d;
+  if (format == "gltf") return BodyFormat::kGltf;
   return std::nullopt;
 }
 
 Result<ordered_json> RunBodies(const std::string& file, const std::string& format, BodyFormat body,
-                               const std::string& folder, bool replace) {
-  const auto motions = ExportBodies(file, folder, body, replace);
+                               const std::string& folder, bool replace, BvhSkeleton skeleton) {
+  const auto motions = ExportBodies(file, folder, body, replace, skeleton);
   if (!motions) return motions.error();
   ordered_json out{{"file", file}, {"format", format}, {"files", ordered_json::array()}};
   for (const ExportedMotion& motion : *motions) {
@@ -118,6 +120,10 @@ Result<ordered_json> RunBodies(const std::string& file, const std::string& forma
                             {"begin_s", motion.begin_s},
                             {"angle_errors", motion.angle_errors}});
   }
+  const bool has_errors = std::any_of(motions->begin(), motions->end(), [](const auto& motion) {
+    return !motion.angle_errors.empty();
+  });
+  if (!has_errors) return out;
   out["angle_sd_source"] = body::AngleDeviationSource();
   out["angle_sd"] = ordered_json::array();
   for (const body::AngleDeviation& one : body::CoordinateDeviations()) {
@@ -135,8 +141,10 @@ Result<ordered_json> RunXdf(const std::string& file, const std::string& folder, 
                    {"files", {{{"path", exported->path}}}},
                    {"streams", ordered_json::array()}};
   for (const ExportedStream& stream : exported->streams) {
-    out["streams"].push_back(
-        {{"name", stream.name}, {"channels", stream.channels}, {"samples", stream.samples}});
+    out["streams"].push_back({{"name", stream.name},
+                              {"channels", stream.channels},
+                              {"samples", stream.samples},
+                              {"mended_times", stream.mended_times}});
   }
   return out;
 }
@@ -153,32 +161,39 @@ Result<ordered_json> RunBids(const std::string& file, const std::string& folder,
     out["files"].push_back({{"path", table.path},
                             {"tracking_system", table.tracking_system},
                             {"channels", table.channels},
-                            {"samples", table.samples}});
+                            {"samples", table.samples},
+                            {"mended_times", table.mended_times}});
   }
   return out;
 }
 
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
-                               const std::string& folder, const BidsOptions& of_bids) {
+                               const std::string& folder, const BidsOptions& of_bids,
+                               const std::string& skeleton, bool tidy) {
+  if (tidy && format != "csv") return UsageError("--tidy needs --format csv");
+  if (!skeleton.empty() && format != "bvh") return UsageError("--skeleton needs --format bvh");
   if (format == "bids") return RunBids(file, folder, of_bids);
   if (!of_bids.subject.empty() || !of_bids.task.empty()) {
     return UsageError("--subject and --task need --format bids");
   }
   const bool replace = of_bids.replace;
   if (const auto body = BodyFormatOf(format)) {
-    return RunBodies(file, format, *body, folder, replace);
+    return RunBodies(file, format, *body, folder, replace,
+                     skeleton == "humanoid" ? BvhSkeleton::kHumanoid : BvhSkeleton::kCmu);
   }
   if (format == "xdf") return RunXdf(file, folder, replace);
   if (format != "csv") {
     return UsageError("unknown --format " + format +
-                      "; there are: csv, xdf, bids, bvh, trc, mot, c3d");
+                      "; there are: csv, xdf, bids, bvh, trc, mot, c3d, gltf");
   }
-  const auto files = ExportCsv(file, folder, replace);
+  const auto files = ExportCsv(file, folder, replace, tidy);
   if (!files) return files.error();
   ordered_json out{{"file", file}, {"format", format}, {"files", ordered_json::array()}};
   for (const ExportedFile& exported : *files) {
-    out["files"].push_back(
-        {{"topic", exported.topic}, {"path", exported.path}, {"rows", exported.rows}});
+    out["files"].push_back({{"topic", exported.topic},
+                            {"path", exported.path},
+                            {"rows", exported.rows},
+                            {"mended_times", exported.mended_times}});
   }
   return out;
 }
@@ -232,9 +247,17 @@ void AddRecordCommand(CLI::App& app, Shared& shared) {
   command->add_flag(
       "--from-ring", options->from_ring,
       "Begin with what the servers still hold of the last 30 s, needed to replay a whole session");
+  const auto compression = std::make_shared<std::string>("zstd");
+  command
+      ->add_option("--compression", *compression,
+                   "Of the file's chunks: zstd or none, for readers that do not know it (default "
+                   "zstd)")
+      ->check(CLI::IsMember({"zstd", "none"}));
   command->add_flag("--force", options->replace, "Overwrite an existing file");
-  command->callback(
-      [options, addresses, &shared] { Finish(RunRecord(*options, *addresses), shared); });
+  command->callback([options, addresses, compression, &shared] {
+    options->compress = *compression == "zstd";
+    Finish(RunRecord(*options, *addresses), shared);
+  });
 }
 
 void AddExportCommand(CLI::App& app, Shared& shared) {
@@ -243,6 +266,8 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   const auto file = std::make_shared<std::string>();
   const auto format = std::make_shared<std::string>();
   const auto folder = std::make_shared<std::string>();
+  const auto skeleton = std::make_shared<std::string>();
+  const auto tidy = std::make_shared<bool>(false);
   const auto of_bids = std::make_shared<BidsOptions>();
   of_bids->version = cli::Version();
   command->add_option("FILE", *file, "Recording, MCAP file")->required();
@@ -250,10 +275,11 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
       ->add_option(
           "--format", *format,
           "Output format: csv, xdf (Lab Streaming Layer), bids (a subject's task in a data set), "
-          "or of reconstructed bodies bvh "
+          "or of reconstructed bodies and the biped bvh "
           "(rotations), trc (joint centres), "
-          "mot (joint angles and forces under the feet, for OpenSim) or c3d (joint centres and "
-          "forces under the feet)")
+          "mot (joint angles and forces under the feet, external loads and a model, for OpenSim), "
+          "c3d "
+          "(joint centres and forces under the feet) or gltf (an animated figure, .glb)")
       ->required();
   command
       ->add_option("--out", *folder,
@@ -266,9 +292,57 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   command->add_option(
       "--task", of_bids->task,
       "With bids: label of the task, letters and digits (default: the file's name)");
+  command
+      ->add_option("--skeleton", *skeleton,
+                   "With bvh: cmu (joints named as CMU's, as recorded; default) or humanoid (a "
+                   "T-pose at rest and the names of Unity's human bones)")
+      ->check(CLI::IsMember({"cmu", "humanoid"}));
+  command->add_flag("--tidy", *tidy,
+                    "With csv: fewer columns, named by joint with the unit last, and a codebook");
   command->add_flag("--force", of_bids->replace, "Overwrite existing files");
   command->callback([=, &shared] {
-    Finish(RunExport(*file, *format, WithoutEndSlashes(*folder), *of_bids), shared);
+    Finish(RunExport(*file, *format, WithoutEndSlashes(*folder), *of_bids, *skeleton, *tidy),
+           shared);
+  });
+}
+
+void AddOscCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand(
+      "osc", "Send the characters of footing-sim to programs for avatars and sound, live");
+  const auto options = std::make_shared<OscOptions>();
+  const auto address = std::make_shared<std::string>();
+  const auto format = std::make_shared<std::string>("vmc");
+  command
+      ->add_option("--to", options->to,
+                   "UDP address of a receiver, HOST:PORT; may be repeated (VMC's own port is "
+                   "39539)")
+      ->required();
+  command
+      ->add_option("--format", *format,
+                   "vmc (bones of an avatar, for VSeeFace, Warudo, Unity and others; default) or "
+                   "osc (places of all links, /footing/character/...)")
+      ->check(CLI::IsMember({"vmc", "osc"}));
+  command->add_option("--connect", *address,
+                      "Address of footing-sim (default: this user's simulation server)");
+  command->add_option("--rate-hz", options->rate_hz, "Frames a second, at most (default 60)")
+      ->check(CLI::Range(1.0, 120.0));
+  command->add_option("--seconds", options->seconds, "Duration, s (default: until SIGINT)")
+      ->check(CLI::Range(0.1, 1e6));
+  command->callback([=, &shared] {
+    const auto run = [&]() -> Result<ordered_json> {
+      const auto from = transport::AddressOrDefault(*address, "simulation");
+      if (!from) return from.error();
+      options->from = *from;
+      options->format = *format == "vmc" ? OscFormat::kVmc : OscFormat::kPlain;
+      const auto report = SendOsc(*options);
+      if (!report) return report.error();
+      return ordered_json{{"frames", report->frames},
+                          {"packets", report->packets},
+                          {"bytes", report->bytes},
+                          {"refused_packets", report->refused},
+                          {"longest_gap_s", report->longest_gap_s}};
+    };
+    Finish(run(), shared);
   });
 }
 
@@ -604,6 +678,9 @@ class Copier {
       WriteDown();
     };
     visitor.metadata = [this](const mcap::Metadata& metadata) { writer_.Add(metadata); };
+    visitor.chunk = [this](const mcap::Chunk& chunk) {
+      writer_.SetCompress(chunk.compression == mcap::kZstd);
+    };
     return visitor;
   }
 
@@ -852,6 +929,7 @@ Result<RecordReport> Record(const RecordOptions& options) {
   recording::WriterSettings settings;
   settings.library = "footing-log " + options.version;
   settings.replace = options.replace;
+  settings.chunks.compress = options.compress;
   Result<recording::RecordingWriter> writer =
       recording::RecordingWriter::Create(options.out, settings);
   if (!writer) return writer.error();

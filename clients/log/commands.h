@@ -29,6 +29,7 @@ void AddExportCommand(CLI::App& app, Shared& shared);
 void AddRepairCommand(CLI::App& app, Shared& shared);
 void AddRecalibrateCommand(CLI::App& app, Shared& shared);
 void AddServeCommand(CLI::App& app, Shared& shared);
+void AddOscCommand(CLI::App& app, Shared& shared);
 
 /// Counts of one recalibration, for the summary.
 struct RecalibrateReport {
@@ -51,6 +52,7 @@ struct RecordOptions {
   double seconds = 0;      ///< From the start; 0: until SIGINT or SIGTERM.
   bool from_ring = false;  ///< First what the servers' rings still hold, up to 30 s.
   bool replace = false;
+  bool compress = true;                  ///< Chunks, by zstd.
   std::vector<std::string> attachments;  ///< Files: config, calibrations, track, survey.
   std::string version;
 };

@@ -3,15 +3,19 @@
 
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
-      "footing-log", "Records what the servers send, and reads, exports and repairs recordings.",
+      "footing-log",
+      "Records what the servers send, reads, exports and repairs recordings, and sends live poses.",
       "  footing-log record --out a.mcap\n"
       "  footing-log info a.mcap --json\n"
       "  footing-log export a.mcap --format csv --out a/\n"
+      "  footing-log export a.mcap --format csv --tidy --out tidy/\n"
       "  footing-log export a.mcap --format xdf --out a/\n"
       "  footing-log export a.mcap --format bids --out data/ --subject 02\n"
+      "  footing-log export a.mcap --format bvh --skeleton humanoid --out a/\n"
       "  footing-log repair cut.mcap --out whole.mcap\n"
       "  footing-log recalibrate a.mcap --camera camera.json --out again.mcap\n"
-      "  footing-log serve a.mcap --listen unix:/tmp/replay.sock");
+      "  footing-log serve a.mcap --listen unix:/tmp/replay.sock\n"
+      "  footing-log osc --to 127.0.0.1:39539 --format vmc");
   footing::log_client::Shared shared;
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");
   app->require_subcommand(1);
@@ -22,6 +26,7 @@ int main(int argc, char** argv) {
   footing::log_client::AddRepairCommand(*app, shared);
   footing::log_client::AddRecalibrateCommand(*app, shared);
   footing::log_client::AddServeCommand(*app, shared);
+  footing::log_client::AddOscCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

@@ -57,7 +57,9 @@ def main(program, writer):
         assert len(motion.read_text().splitlines()) == 300, motion
         assert run("export", repaired, "--format", "bids", "--out", folder / "bids", "--subject", "p_1").returncode == 2
 
-        for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bids, bvh, trc, mot, c3d"),
+        for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bids, bvh, trc, mot, c3d, gltf"),
+                            (("export", whole, "--format", "csv", "--out", folder / "s", "--skeleton", "humanoid"), "needs --format bvh"),
+                            (("export", whole, "--format", "xdf", "--out", folder / "s", "--tidy"), "needs --format csv"),
                             (("export", whole, "--format", "csv", "--out", folder / "s", "--subject", "02"), "need --format bids"),
                             (("serve", whole, "--server", "none"), "there are: footingd"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
@@ -65,10 +67,12 @@ def main(program, writer):
                             (("shred", whole), "")):
             done = run(*words)
             assert done.returncode == 2 and said in done.stderr, (words, done)
-        for format in ("bvh", "trc", "mot", "c3d"):
+        for format in ("bvh", "trc", "mot", "c3d", "gltf"):
             export = run("export", whole, "--format", format, "--out", folder / format)
             assert export.returncode == 4 and "no reconstructed body" in export.stderr, export
         assert run("info", folder / "none.mcap").returncode == 1
+        nobody = run("osc", "--connect", f"unix:{folder}/none.sock", "--to", "127.0.0.1:39539", "--seconds", "0.2")
+        assert nobody.returncode == 3 and "none.sock" in nobody.stderr, nobody
         nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "n.mcap",
                      "--seconds", "0.2")
         assert nobody.returncode == 3 and "none.sock" in nobody.stderr and "was not written" in nobody.stderr, nobody

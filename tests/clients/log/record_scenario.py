@@ -2,8 +2,12 @@
 
 Usage: record_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 """
+import select
 import signal
+import socket
+import struct
 import sys
+import threading
 import time
 
 sys.path.insert(0, sys.argv[1])
@@ -15,6 +19,74 @@ def check_missing(stage, info):
     left_out = sum(stage.run_json("footing-ctl", "--connect", address, "status")["stats"]["ticks"]["left_out"]
                    for address in (stage.sensor, stage.simulation))
     assert info["missing_ticks"] <= left_out, (info, left_out)
+
+
+def osc_messages(packet):
+    """The messages of a bundle, by the specification of OSC 1.0: addresses and arguments."""
+    assert len(packet) % 4 == 0 and packet[:16] == b"#bundle\0" + bytes(7) + b"\x01", packet[:16]
+
+    def text(data, at):
+        end = data.index(b"\0", at)
+        after = end + 4 - end % 4
+        assert not any(data[end:after]), "padding"
+        return data[at:end].decode("ascii"), after
+
+    at, messages = 16, []
+    while at < len(packet):
+        size = struct.unpack_from(">i", packet, at)[0]
+        data = packet[at + 4:at + 4 + size]
+        assert len(data) == size and size % 4 == 0
+        address, here = text(data, 0)
+        types, here = text(data, here)
+        values = []
+        for kind in types[1:]:
+            if kind == "s":
+                value, here = text(data, here)
+            elif kind in "TF":
+                value = kind == "T"
+            else:
+                value = struct.unpack_from({"f": ">f", "i": ">i", "d": ">d"}[kind], data, here)[0]
+                here += 8 if kind == "d" else 4
+            values.append(value)
+        assert here == size, (address, types)
+        messages.append((address, values))
+        at += 4 + size
+    return messages
+
+
+def check_osc(stage):
+    """Two receivers, one of which is not there; the other one gets every frame, in both formats."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
+        receiver.bind(("127.0.0.1", 0))
+        to = f"127.0.0.1:{receiver.getsockname()[1]}"
+        for form, frame_end in (("vmc", "/VMC/Ext/T"), ("osc", "/footing/character/1/frame")):
+            # The kernel keeps fewer datagrams than come in 2 s.
+            packets, ended = [], threading.Event()
+
+            def receive():
+                while select.select([receiver], [], [], 0.2)[0] or not ended.is_set():
+                    if select.select([receiver], [], [], 0)[0]:
+                        packets.append(receiver.recv(65536))
+
+            reader = threading.Thread(target=receive)
+            reader.start()
+            try:
+                sent = stage.run_json("footing-log", "osc", "--connect", stage.simulation, "--to", to, "--to",
+                                      "127.0.0.1:9", "--format", form, "--rate-hz", 50, "--seconds", 2)
+            finally:
+                ended.set()
+                reader.join()
+            times, bones = [], {}
+            for address, values in (message for packet in packets for message in osc_messages(packet)):
+                if address == frame_end:
+                    times.append(values[0])
+                elif address == "/VMC/Ext/Bone/Pos":
+                    bones[values[0]] = values[1:]
+            assert len(times) == sent["frames"] and all(b > a for a, b in zip(times, times[1:])), (sent, times)
+            assert 30 <= sent["frames"] <= 110 and sent["refused_packets"] > 0, sent
+            if form == "vmc":
+                assert {"Hips", "LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "RightHand", "Head"} <= set(bones), bones
+                assert all(abs(sum(v * v for v in bone[3:]) - 1) < 1e-5 for bone in bones.values()), bones
 
 
 def main():
@@ -53,6 +125,8 @@ def main():
             info = stage.run_json("footing-log", "record", *connect, "--out", late, "--seconds", 2, *ring)
             assert least_s <= info["duration_s"] <= most_s, (ring, info)
             check_missing(stage, info)
+
+        check_osc(stage)
 
         # Start-up of the process and connecting are within the first 0.5 s.
         assert kept_s > killed_after_s - 1.5, (kept_s, killed_after_s)
