@@ -14,8 +14,8 @@
 
 #include "clients/skeleton/tracking/decoder.h"
 #include "clients/skeleton/tracking/joint_set.h"
-#include "common/base/osc.h"
 #include "clients/skeleton/tracking/person_gate.h"
+#include "common/base/osc.h"
 #include "common/base/result.h"
 #include "common/stream/hands.h"
 
