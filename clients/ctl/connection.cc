@@ -134,6 +134,10 @@ const std::optional<stream::ServerStats>& Connection::stats() const {
 }
 const v1::Welcome& Connection::welcome() const { return implementation_->welcome_; }
 std::int64_t Connection::server_ns() const { return implementation_->server_ns_; }
+std::int64_t Connection::OnServersClock(std::int64_t our_ns) const {
+  return transport::OnServersClock(implementation_->dialled_.address,
+                                   implementation_->client_->clock(), our_ns);
+}
 bool Connection::live() const { return implementation_->live_; }
 const std::string& Connection::link() const { return implementation_->link_; }
 std::string Connection::TakeNotice() { return std::exchange(implementation_->notice_, {}); }

@@ -52,6 +52,8 @@ class Connection {
   const v1::Welcome& welcome() const;
   /// Newest host_ns of footingd's ticks: its CLOCK_MONOTONIC; 0 before the first one.
   std::int64_t server_ns() const;
+  /// An instant of this host's CLOCK_MONOTONIC on that of footingd; 0: not known yet.
+  std::int64_t OnServersClock(std::int64_t our_ns) const;
   bool live() const;
   /// A line for a person on how the connection stands.
   const std::string& link() const;

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -14,6 +16,7 @@
 #include "common/net/address.h"
 #include "common/net/client.h"
 #include "common/net/known_servers.h"
+#include "common/net/server.h"
 #include "common/net/tls_context.h"
 #include "common/runtime/clock.h"
 
@@ -177,6 +180,62 @@ void AddSessionsCommand(CLI::App& app, Shared& shared) {
   command->callback([options, end, &shared] {
     const auto done = end->parsed() ? End(*options, shared) : List(*options, shared);
     if (!done) shared.exit_code = cli::Report(done.error());
+  });
+}
+
+namespace {
+
+struct MarkOptions {
+  std::string of = "footingd";
+  std::string text;
+  std::optional<double> value;
+};
+
+Result<void> Mark(const MarkOptions& options, std::int64_t called_ns, const Shared& shared) {
+  if (options.text.size() > transport::MarkerQueue::kMostBytes) {
+    return UsageError("mark: the text has " + std::to_string(options.text.size()) +
+                      " bytes; it may have at most " +
+                      std::to_string(transport::MarkerQueue::kMostBytes));
+  }
+  SessionsOptions at;
+  at.of = options.of;
+  const auto session = Connect(at, v1::ROLE_LOG, shared);
+  if (!session) return session.error();
+  const std::int64_t host_ns = (*session)->OnServersClock(called_ns);
+  v1::Command command;
+  command.mutable_marker()->set_text(options.text);
+  if (options.value) command.mutable_marker()->set_value(*options.value);
+  command.mutable_marker()->set_host_ns(host_ns);
+  if (const auto done = (*session)->Call(std::move(command)); !done) return done.error();
+  const std::string server = (*session)->welcome().server_id();
+  ordered_json out{{"server", server}, {"text", options.text}};
+  if (options.value) out["value"] = *options.value;
+  out["host_ns"] = host_ns;
+  Print(out, "marked in " + server + ": " + options.text, shared);
+  return {};
+}
+
+}  // namespace
+
+void AddMarkCommand(CLI::App& app, Shared& shared) {
+  const auto options = std::make_shared<MarkOptions>();
+  CLI::App* command =
+      app.add_subcommand("mark", "Mark this instant: an event in every recording of a server");
+  command->add_option("TEXT", options->text, "Text of the marker, 1 to 1024 bytes")->required();
+  command->add_option("--value", options->value, "Number that belongs to it, such as a trigger's");
+  command->add_option("--of", options->of, "Server, at its default address")
+      ->check(CLI::IsMember({"footingd", "footing-sim"}))
+      ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  footing-ctl mark \"stimulus on\" --value 3\n"
+      "  footing-ctl mark \"begin p07-eyes-closed\"   # a trial, until the next line\n"
+      "  footing-ctl mark \"end p07-eyes-closed\"\n"
+      "The marker has the time at which the command was started.");
+  command->callback([options, &shared] {
+    if (const auto done = Mark(*options, clock::MonotonicNs(), shared); !done) {
+      shared.exit_code = cli::Report(done.error());
+    }
   });
 }
 

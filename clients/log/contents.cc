@@ -629,7 +629,7 @@ Result<ExportedBids> ExportBids(const std::string& recording, const std::string&
   }
   const auto session = recording::RecordedSession::Open(recording);
   if (!session) return session.error();
-  const auto motion = bids::ReadMotion(*session, {});
+  const auto motion = bids::ReadMotion(*session, {.markers = true});
   if (!motion) return motion.error();
   if (motion->tables.empty()) {
     return InvalidData(recording +

@@ -119,7 +119,7 @@ double NumberOf(const pb::Message& message, const pb::FieldDescriptor& field, in
 std::size_t Entries(const pb::Message& message, const pb::FieldDescriptor& field) {
   const pb::Reflection& r = *message.GetReflection();
   if (field.is_repeated()) return static_cast<std::size_t>(r.FieldSize(message, &field));
-  return field.message_type() == nullptr || r.HasField(message, &field) ? 1 : 0;
+  return !field.has_presence() || r.HasField(message, &field) ? 1 : 0;
 }
 
 const pb::Message& Entry(const pb::Message& message, const pb::FieldDescriptor& field,

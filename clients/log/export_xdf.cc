@@ -1,5 +1,6 @@
 #include "clients/log/export_xdf.h"
 
+#include <algorithm>
 #include <bit>
 #include <compare>
 #include <cstdio>
@@ -14,9 +15,11 @@
 #include <google/protobuf/descriptor.h>
 
 #include "clients/log/contents.h"
+#include "common/base/text.h"
 #include "common/recording/recording_writer.h"
 #include "common/stream/device.h"
 #include "common/stream/hand_frames.h"
+#include "footing/v1/character.pb.h"
 
 namespace footing::log_client {
 namespace {
@@ -49,13 +52,18 @@ std::string TextOf(const pb::Message& row, const char* name) {
   return field == nullptr ? "" : row.GetReflection()->GetString(row, field);
 }
 
-/// Such as "KIND_TRIAL: text".
+/// Such as "KIND_TRIAL: text"; of a client's marker its text alone, and its value behind it.
 std::string EventText(const pb::Message& event) {
   const auto* kind = FieldOf(event, "kind", pb::FieldDescriptor::CPPTYPE_ENUM);
-  const std::string text = TextOf(event, "text");
+  const std::string words = TextOf(event, "text");
   const std::string name =
       kind == nullptr ? "" : event.GetReflection()->GetEnum(event, kind)->name();
-  return text.empty() ? name : name + ": " + text;
+  v1::Event marker;
+  if (name == "KIND_MARKER" && marker.ParseFromString(event.SerializeAsString())) {
+    const bool has_value = marker.marker().has_value();
+    return words + (has_value ? " " + text::Shortest(marker.marker().value()) : "");
+  }
+  return words.empty() ? name : name + ": " + words;
 }
 
 }  // namespace
@@ -91,6 +99,9 @@ struct Outgoing {
   xdf::Extent extent;
   xdf::Samples samples;
   RisingTimes times;
+  /// Times, ns, and texts of a stream of texts: a marker may be earlier than an event of the tick
+  /// before, and the times in a file rise.
+  std::vector<std::pair<std::int64_t, std::string>> texts = {};
 };
 
 class XdfExporter {
@@ -113,6 +124,7 @@ class XdfExporter {
     if (!walked) return walked.error();
     for (auto& [key, outgoing] : streams_) {
       if (outgoing.stream.channels.empty()) continue;  // Only texts, and no event.
+      OrderTexts(outgoing);
       outgoing.samples.AppendTo(outgoing.stream, out_);
       if (outgoing.extent.samples > 1) {
         xdf::AppendClockOffset(outgoing.stream, outgoing.extent.last_s, out_);
@@ -199,18 +211,31 @@ class XdfExporter {
 
   void Add(Outgoing& to, const mcap::Message& record, const pb::Message& message,
            const pb::Message* row, const CsvTable& table) {
-    const double time_s = 1e-9 * static_cast<double>(to.times.Next(TimeOf(record, row)));
+    const std::int64_t time_ns = TimeOf(record, row);
+    if (to.stream.is_text) {
+      to.texts.emplace_back(time_ns, EventText(*row));
+      return;
+    }
+    const double time_s = Extend(to, time_ns);
+    to.samples.Add(time_s, table.Numbers(message, row));
+    if (to.samples.bytes() >= kChunkBytes) to.samples.AppendTo(to.stream, out_);
+  }
+
+  /// The sample's time in the file, s.
+  double Extend(Outgoing& to, std::int64_t time_ns) {
+    const double time_s = 1e-9 * static_cast<double>(to.times.Next(time_ns));
     if (to.extent.samples++ == 0) {
       to.extent.first_s = time_s;
       xdf::AppendClockOffset(to.stream, time_s, out_);
     }
     to.extent.last_s = time_s;
-    if (to.stream.is_text) {
-      to.samples.Add(time_s, EventText(*row));
-    } else {
-      to.samples.Add(time_s, table.Numbers(message, row));
-    }
-    if (to.samples.bytes() >= kChunkBytes) to.samples.AppendTo(to.stream, out_);
+    return time_s;
+  }
+
+  void OrderTexts(Outgoing& to) {
+    std::stable_sort(to.texts.begin(), to.texts.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [time_ns, words] : to.texts) to.samples.Add(Extend(to, time_ns), words);
   }
 
   Tables tables_;

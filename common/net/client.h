@@ -63,6 +63,14 @@ struct ClockOffset {
   std::int64_t uncertainty_ns = 0;  ///< Half the round trip: the truth is within.
 };
 
+/// An instant of ours on the clock of the server at that address, such as for a marker; 0: the
+/// clock's offset is not known yet. Over a Unix socket it is the same clock.
+inline std::int64_t OnServersClock(const Address& address, const ClockOffset& clock,
+                                   std::int64_t our_ns) {
+  if (address.kind == Address::Kind::kUnix) return our_ns;
+  return clock.valid ? our_ns + clock.offset_ns : 0;
+}
+
 /// Calls that a client makes for each message and change of its link.
 struct ClientHandlers {
   std::function<void(const v1::Welcome&)> on_welcome;

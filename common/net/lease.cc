@@ -146,6 +146,7 @@ const char* Guarded(const v1::Command& command) {
     case v1::Command::kReleaseLease:
     case v1::Command::kListSessions:
     case v1::Command::kEndSessions:
+    case v1::Command::kMarker:
     case v1::Command::ACTION_NOT_SET:
       break;
   }

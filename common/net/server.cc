@@ -41,8 +41,10 @@ class Server::Implementation {
     shared_.publication.set_epoch(shared_.epoch);
     // Protobuf would write a line to standard error for every message that a client got wrong.
     google::protobuf::SetLogHandler(nullptr);
-    shared_.on_sessions_command = [this](const SessionInfo& who, const v1::Command& command) {
-      return sessions_.CarryOut(who, command);
+    shared_.on_own_command = [this](const SessionInfo& who, const v1::Command& command,
+                                    std::int64_t arrived_ns) {
+      return command.has_marker() ? TakeMarker(who, command.marker(), arrived_ns)
+                                  : sessions_.CarryOut(who, command);
     };
   }
 
@@ -67,7 +69,13 @@ class Server::Implementation {
 
   std::uint64_t Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
     const TickNumber number = shared_.publication.Next(host_ns);
-    Relay(number, channels);
+    if (markers_.empty()) {
+      Relay(number, channels);
+    } else {
+      std::vector<ChannelBytes> with_markers = channels;
+      markers_.MoveTo(with_markers);
+      Relay(number, with_markers);
+    }
     return number.sequence;
   }
 
@@ -158,6 +166,19 @@ class Server::Implementation {
   const ServerOptions& options() const { return shared_.options; }
 
  private:
+  v1::CommandResult TakeMarker(const SessionInfo& who, const v1::Marker& marker,
+                               std::int64_t arrived_ns) {
+    v1::CommandResult result;
+    if (!shared_.options.takes_markers) {
+      result.set_message(shared_.options.server_id + " takes no markers");
+      return result;
+    }
+    const Result<void> added = markers_.Add(marker, who.client_name, arrived_ns);
+    result.set_ok(added.ok());
+    if (!added) result.set_message("marker: " + added.error().message);
+    return result;
+  }
+
   void ReserveForSessions() const {
     const SessionLimits& limits = shared_.options.sessions;
     ReserveDescriptors(static_cast<std::size_t>(limits.max_sessions + limits.admin_places +
@@ -223,6 +244,7 @@ class Server::Implementation {
   std::optional<tls::Identity> identity_;
   std::vector<std::unique_ptr<Listener>> listeners_;
   SessionTable sessions_{shared_};
+  MarkerQueue markers_;
   std::uint64_t last_number_ = 0;
   TokenBucket late_lines_{0.1, 1};
   TokenBucket left_out_lines_{0.1, 1};
@@ -266,6 +288,44 @@ void Server::Drain(const std::string& reason, std::function<void()> done) {
 void Server::SetLimits(const SessionLimits& limits) { implementation_->SetLimits(limits); }
 std::size_t Server::SetAccess(const AccessKeys& keys) { return implementation_->SetAccess(keys); }
 const ServerOptions& Server::options() const { return implementation_->options(); }
+
+Result<void> MarkerQueue::Add(const v1::Marker& marker, const std::string& client,
+                              std::int64_t arrived_ns) {
+  if (marker.text().empty() || marker.text().size() > kMostBytes) {
+    return UsageError("its text has " + std::to_string(marker.text().size()) +
+                      " bytes; it may have 1 to " + std::to_string(kMostBytes));
+  }
+  const std::int64_t host_ns = marker.host_ns() == 0 ? arrived_ns : marker.host_ns();
+  // As numbers: the difference of two such integers may not fit into one.
+  const double before_s = 1e-9 * (static_cast<double>(arrived_ns) - static_cast<double>(host_ns));
+  if (before_s > kMostBeforeS || before_s < -kMostAfterS) {
+    return UsageError(
+        "its host_ns is more than 60 s before its arrival, or more than 1 s after it; send the "
+        "server's CLOCK_MONOTONIC (your own plus the clock offset), or 0 for the arrival");
+  }
+  if (waiting_.events_size() >= kMostWaiting) {
+    return Failure(std::to_string(kMostWaiting) +
+                   " markers wait for the next tick already; send it again");
+  }
+  v1::Event& event = *waiting_.add_events();
+  event.set_kind(v1::Event::KIND_MARKER);
+  event.set_host_ns(host_ns);
+  event.set_text(marker.text());
+  if (marker.has_value()) event.mutable_marker()->set_value(marker.value());
+  event.mutable_marker()->set_received_ns(arrived_ns);
+  event.mutable_marker()->set_client(client);
+  return {};
+}
+
+void MarkerQueue::MoveTo(std::vector<ChannelBytes>& channels) {
+  constexpr std::uint32_t kEvents = v1::Tick::kEventsFieldNumber;
+  auto channel = std::find_if(channels.begin(), channels.end(),
+                              [](const ChannelBytes& one) { return one.field == kEvents; });
+  if (channel == channels.end()) channel = channels.insert(channels.end(), {kEvents, ""});
+  // The bytes of two Events, one behind the other, are an Events with the entries of both.
+  waiting_.AppendToString(&channel->bytes);
+  waiting_.Clear();
+}
 
 namespace {
 

@@ -68,6 +68,8 @@ struct ServerOptions : AccessKeys {
   double ping_interval_s = 1;
   double dead_after_s = 10;
   std::vector<std::string> capabilities;
+  /// Publishes the markers of its clients as events, on the channel `events`, which it then has.
+  bool takes_markers = false;
   /// The clock of all stamps; CLOCK_MONOTONIC when none is given.
   std::function<std::int64_t()> now_ns;
 };
@@ -96,7 +98,8 @@ struct OverloadLine {
 /// Calls that a server makes to the program that it is part of.
 struct ServerHandlers {
   /// A command of a session with role control or admin. Roles below, and texts and numbers that no
-  /// command may have (CheckContent), are refused before this is called. Without a result the
+  /// command may have (CheckContent), are refused before this is called. The server itself carries
+  /// out markers and what concerns sessions. Without a result the
   /// answer comes later, by Server::Answer().
   std::function<std::optional<v1::CommandResult>(const SessionInfo&, const v1::Command&)>
       on_command;
@@ -122,6 +125,26 @@ struct ServerStatistics {
   std::uint64_t ring_bytes = 0;
   std::uint64_t slowed = 0;      ///< Times that a session had to wait for its budget.
   std::uint64_t late_ticks = 0;  ///< As reported by NoteLateTicks().
+};
+
+/// Markers of clients that wait for the next tick. A plain value.
+class MarkerQueue {
+ public:
+  static constexpr int kMostBytes = 1024;  ///< Longest text.
+  /// More have to come with a later tick: they would displace the channels of this one.
+  static constexpr int kMostWaiting = 128;
+  static constexpr double kMostBeforeS = 60;  ///< Before its arrival, for a person who is late.
+  static constexpr double kMostAfterS = 1;    ///< More is another clock, not an estimate's error.
+
+  /// Usage error: the text is empty or too long, or the time is of another clock. Failure: too many
+  /// wait. Times are of the server's clock.
+  Result<void> Add(const v1::Marker& marker, const std::string& client, std::int64_t arrived_ns);
+  bool empty() const { return waiting_.events_size() == 0; }
+  /// Adds those that wait to the channels of a tick, behind the events that it has already.
+  void MoveTo(std::vector<ChannelBytes>& channels);
+
+ private:
+  v1::Events waiting_;
 };
 
 /// Publishes ticks to any number of sessions. Everything runs on the io_context's one thread.

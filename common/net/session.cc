@@ -111,8 +111,19 @@ FramedLimits LimitsOf(const ServerOptions& options) {
 }
 
 /// The server answers these itself, whatever its program does with others.
-bool ConcernsSessions(const v1::Command& command) {
-  return command.has_list_sessions() || command.has_end_sessions();
+bool IsOfServer(const v1::Command& command) {
+  return command.has_list_sessions() || command.has_end_sessions() || command.has_marker();
+}
+
+/// Why a session of this role may not send the command; empty: it may. A marker changes nothing but
+/// the recordings, so a recorder may send it.
+std::string WhyNotPermitted(const v1::Command& command, v1::Role role) {
+  if (role >= (command.has_marker() ? v1::ROLE_LOG : v1::ROLE_CONTROL)) return "";
+  const std::string needed = command.has_marker() ? "log" : "control";
+  return (command.has_marker() ? "a marker needs the role " : "commands need the role ") + needed +
+         ", and this session has a lower one: request " + needed +
+         " in Hello, over the server's Unix socket, or with its token or a certificate for this "
+         "role";
 }
 
 std::string Seconds(double seconds) {
@@ -282,21 +293,18 @@ std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
       command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
   if (open_commands_.size() > kMaxQueuedAnswers) {
     failed.set_message("not carried out: too many commands of this session wait for the disk");
-  } else if (info_.role < v1::ROLE_CONTROL) {
-    failed.set_message(
-        "commands need the role control, and this session has a lower one: request control in "
-        "Hello, over the server's Unix socket, or with its token or a certificate for this role");
+  } else if (const auto why = WhyNotPermitted(command, info_.role); !why.empty()) {
+    failed.set_message(why);
   } else if (shared_.NowNs() - arrived_ns >
              std::int64_t{deadline_ms} * kNanosecondsPerMillisecond) {
     failed.set_message("not carried out: its deadline of " + std::to_string(deadline_ms) +
                        " ms had passed");
-  } else if (ConcernsSessions(command) ? !shared_.on_sessions_command
-                                       : !shared_.handlers.on_command) {
+  } else if (IsOfServer(command) ? !shared_.on_own_command : !shared_.handlers.on_command) {
     failed.set_message(shared_.options.server_id + " takes no commands");
   } else if (const auto content = CheckContent(command); !content) {
     failed.set_message(content.error().message);
-  } else if (ConcernsSessions(command)) {
-    return shared_.on_sessions_command(info_, command);
+  } else if (IsOfServer(command)) {
+    return shared_.on_own_command(info_, command, arrived_ns);
   } else {
     return shared_.handlers.on_command(info_, command);
   }

@@ -160,8 +160,10 @@ struct Shared {
   std::map<v1::Refused::Reason, TokenBucket> refused_lines;
   /// And for sessions that are ended since their client sent what it must not.
   TokenBucket ended_lines{0.1, 1};
-  /// Carries out what concerns other sessions: list_sessions and end_sessions.
-  std::function<v1::CommandResult(const SessionInfo&, const v1::Command&)> on_sessions_command;
+  /// Carries out what the server does itself (IsOfServer); the command's arrival is its third
+  /// argument.
+  std::function<v1::CommandResult(const SessionInfo&, const v1::Command&, std::int64_t)>
+      on_own_command;
 };
 
 /// One client's connection on the server's side, from Hello to Goodbye.

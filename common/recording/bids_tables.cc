@@ -121,10 +121,47 @@ ordered_json MotionJson(const MotionTable& table, const std::string& task,
   return json;
 }
 
+namespace {
+
+bool HasMarkers(const std::vector<Event>& events) {
+  return std::any_of(events.begin(), events.end(), [](const Event& one) { return one.is_marker; });
+}
+
+/// The name behind this word of a marker's text; empty: it is another marker.
+std::string NameBehind(const std::string& word, const Event& event) {
+  return event.is_marker && event.trial_type.starts_with(word)
+             ? event.trial_type.substr(word.size())
+             : "";
+}
+
+}  // namespace
+
+std::vector<Event> WithSpans(const std::vector<Event>& events) {
+  std::vector<Event> joined;
+  for (const Event& event : events) {
+    const std::string ended = NameBehind("end ", event);
+    const auto begun = std::find_if(joined.rbegin(), joined.rend(), [&](const Event& one) {
+      return !ended.empty() && NameBehind("begin ", one) == ended;
+    });
+    if (begun == joined.rend()) {
+      joined.push_back(event);
+      continue;
+    }
+    begun->trial_type = ended;
+    begun->duration_s = event.onset_s - begun->onset_s;
+  }
+  return joined;
+}
+
 std::string EventsTsv(const std::vector<Event>& events) {
   std::vector<std::vector<std::string>> rows = {{"onset", "duration", "trial_type", "counts"}};
+  const bool has_markers = HasMarkers(events);
+  if (has_markers) rows[0].push_back("value");
   for (const Event& one : events) {
-    rows.push_back({text::Fixed(one.onset_s, 3), "0", one.trial_type, one.counts ? "yes" : "no"});
+    rows.push_back({text::Fixed(one.onset_s, 3),
+                    one.duration_s > 0 ? text::Fixed(one.duration_s, 3) : "0", one.trial_type,
+                    one.counts ? "yes" : "no"});
+    if (has_markers) rows.back().push_back(one.value ? text::Shortest(*one.value) : "");
   }
   return Tsv(rows);
 }
@@ -136,7 +173,7 @@ ordered_json Column(const std::string& description, const std::string& units) {
 }
 
 std::vector<File> EventFiles(const std::vector<Event>& events, const std::string& stem) {
-  const ordered_json codebook = {
+  ordered_json codebook = {
       {"onset", Column("On the time of the channel latency", "s")},
       {"duration", Column("0: an instant", "s")},
       {"trial_type",
@@ -144,6 +181,11 @@ std::vector<File> EventFiles(const std::vector<Event>& events, const std::string
               "trial_stopped; failure_KIND; put_back, put_back_by_operator; task_done; "
               "gait_NAME: the character has changed to this gait")},
       {"counts", Column("no: a failure that was undone, by mistake of the detection")}};
+  if (HasMarkers(events)) {
+    codebook["value"] = Column(
+        "Number that a program gave its marker; the trial_type of a marker is its text, and of a "
+        "pair \"begin NAME\" and \"end NAME\" the NAME");
+  }
   return {{stem + "_events.tsv", EventsTsv(events)},
           {stem + "_events.json", codebook.dump(2) + "\n"}};
 }
@@ -408,6 +450,8 @@ std::string TypeOf(const v1::Event& event) {
       return std::string("trial_") + stream::Name(wire::FromProto(event.trial()).progress.phase);
     case v1::Event::KIND_TASK:
       return "task_done";
+    case v1::Event::KIND_MARKER:
+      return event.text();
     default:
       return "";
   }
@@ -457,7 +501,10 @@ void AddEvents(const v1::Tick& tick, const RunClock& clock, const std::set<std::
     const bool counts =
         event.kind() != v1::Event::KIND_FALL || undone.count(event.failure().number()) == 0;
     const double onset_s = clock(event.host_ns());
-    if (!type.empty() && std::isfinite(onset_s)) events.push_back({onset_s, type, counts});
+    if (type.empty() || !std::isfinite(onset_s)) continue;
+    events.push_back({onset_s, type, counts});
+    events.back().is_marker = event.kind() == v1::Event::KIND_MARKER;
+    if (event.marker().has_value()) events.back().value = event.marker().value();
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -54,6 +55,10 @@ struct Event {
   double onset_s = 0;      ///< On the time of the column latency.
   std::string trial_type;  ///< Such as "failure_curve".
   bool counts = true;      ///< False: a failure that was undone.
+  /// A client's marker, whose text is the type, and its value.
+  bool is_marker = false;
+  std::optional<double> value = std::nullopt;
+  double duration_s = 0;
 };
 
 /// Text of a table: cells that are empty become "n/a", tabs and line ends blanks.
@@ -81,6 +86,11 @@ std::vector<File> MotionFiles(const MotionTable& table, const std::string& stem,
 /// "dataset_description.json", written by a `program` of this version.
 File DescriptionFile(const std::string& name, const std::string& program,
                      const std::string& version);
+/// Events by time in which a marker "begin NAME" and the next "end NAME" are one event NAME, which
+/// lasts from one to the other.
+std::vector<Event> WithSpans(const std::vector<Event>& events);
+
+/// With a column `value` where there are markers.
 std::string EventsTsv(const std::vector<Event>& events);
 /// STEM_events.tsv, and STEM_events.json that says what its columns mean.
 std::vector<File> EventFiles(const std::vector<Event>& events, const std::string& stem);

@@ -35,6 +35,7 @@ class Reader {
     }
     motion_.tables = characters_.Take();
     for (const auto& [name, table] : devices_.tables()) motion_.tables.push_back(table);
+    OrderEvents();
     return std::move(motion_);
   }
 
@@ -96,13 +97,32 @@ class Reader {
   Result<void> ReadDevices(const RecordedServer& server) {
     const auto ticks = ReadTicks(
         server, {Tick::kStatusFieldNumber, Tick::kMotionFieldNumber, Tick::kBoardsFieldNumber,
-                 Tick::kNunchukFieldNumber, Tick::kHandsFieldNumber});
+                 Tick::kNunchukFieldNumber, Tick::kHandsFieldNumber, Tick::kEventsFieldNumber});
     if (!ticks) return ticks.error();
     const auto clock = RunClock::Of(server, *zero_wall_ns_);
     if (!clock) return clock.error();
     devices_.Start(*clock);
-    for (const Tick& tick : *ticks) devices_.Add(wire::SensorTick(tick));
+    for (const Tick& tick : *ticks) {
+      devices_.Add(wire::SensorTick(tick));
+      AddEvents(tick, *clock, choice_.undone, motion_.events);
+    }
     return {};
+  }
+
+  /// A marker has the time of its sender, which is before that of its tick.
+  void OrderEvents() {
+    std::vector<Event>& events = motion_.events;
+    if (!choice_.markers) {
+      events.erase(std::remove_if(events.begin(), events.end(),
+                                  [](const Event& one) { return one.is_marker; }),
+                   events.end());
+    }
+    const bool any_marker =
+        std::any_of(events.begin(), events.end(), [](const Event& one) { return one.is_marker; });
+    if (!any_marker) return;
+    std::stable_sort(events.begin(), events.end(),
+                     [](const Event& a, const Event& b) { return a.onset_s < b.onset_s; });
+    events = WithSpans(events);
   }
 
   const Choice& choice_;

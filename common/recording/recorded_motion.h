@@ -13,16 +13,19 @@ namespace footing::bids {
 
 /// Parts of a recording that become a run of a data set.
 struct Choice {
-  std::string trial;  ///< The frames of this trial, and from its first one on all samples and
-                      ///< events; empty: everything.
-  std::set<std::uint64_t> undone;  ///< Failures that do not count.
-  bool with_role = false;          ///< Only devices that have a role.
+  /// The frames of this trial, and from its first one on all samples and events; empty: everything.
+  std::string trial = {};
+  std::set<std::uint64_t> undone = {};  ///< Failures that do not count.
+  bool with_role = false;               ///< Only devices that have a role.
+  /// The markers of clients, too. Their texts are free, so they may name people.
+  bool markers = false;
 };
 
 /// A recording as the tables of a data set.
 struct RecordedMotion {
   std::vector<MotionTable> tables;  ///< The table of footing-sim first, then one a sending device.
-  std::vector<Event> events;        ///< In order for each server's start.
+  /// In order for each server's start; with markers, of all servers by time.
+  std::vector<Event> events;
   std::string config;  ///< The last EffectiveConfig of the recording; empty: it has none.
 };
 

@@ -64,6 +64,16 @@ Json Tasks(const timeline::Timeline& line) {
   return tasks;
 }
 
+Json Markers(const timeline::Timeline& line) {
+  Json markers = Json::array();
+  for (const timeline::MarkerMark& marker : line.markers) {
+    markers.push_back({{"at_s", marker.at_s},
+                       {"text", marker.text},
+                       {"value", marker.value ? Json(*marker.value) : Json()}});
+  }
+  return markers;
+}
+
 Json Playback(const PlaySession& session, const PlayedSide& side) {
   const timeline::SideState state = session.StateOf(side);
   const timeline::TrialMark* const trial = timeline::TrialAt(side.timeline, state.at_s);
@@ -78,6 +88,7 @@ Json Playback(const PlaySession& session, const PlayedSide& side) {
   playback["trials"] = Trials(side.timeline);
   playback["failures"] = Failures(side.timeline);
   playback["tasks"] = Tasks(side.timeline);
+  playback["markers"] = Markers(side.timeline);
   return playback;
 }
 

@@ -65,6 +65,11 @@ class MarkCollector {
         return OnFailure(event, at_s);
       case v1::Event::KIND_CORRECTION:
         return OnCorrection(event.failure());
+      case v1::Event::KIND_MARKER:
+        marks_.timeline.markers.push_back(
+            {at_s, event.text(),
+             event.marker().has_value() ? std::optional(event.marker().value()) : std::nullopt});
+        return;
       default:
         return;
     }
@@ -93,6 +98,11 @@ class MarkCollector {
     const auto earlier = [](const auto& a, const auto& b) { return a.at_s < b.at_s; };
     std::stable_sort(line.failures.begin(), line.failures.end(), earlier);
     std::stable_sort(line.tasks.begin(), line.tasks.end(), earlier);
+    std::stable_sort(line.markers.begin(), line.markers.end(), earlier);
+    // Those of the second server come behind all of the first one.
+    std::sort(marks_.notes_ns.begin(), marks_.notes_ns.end());
+    // footing-sim's own trials say more; whoever leads trials there needs no markers for them.
+    if (line.trials.empty()) line.trials = timeline::TrialsOf(line.markers);
     for (TrialMark& trial : line.trials) trial.begin_s = std::max(trial.begin_s, 0.0);
     return std::move(marks_);
   }
@@ -104,8 +114,8 @@ class MarkCollector {
     const timeline::Timeline& line = marks_.timeline;
     const std::size_t instants = std::max(
         {marks_.gait_changes_ns.size(), marks_.responses_ns.size(), marks_.notes_ns.size()});
-    return std::max({line.trials.size(), line.failures.size(), line.tasks.size()}) >=
-               timeline::kMostMarks ||
+    return std::max({line.trials.size(), line.failures.size(), line.tasks.size(),
+                     line.markers.size()}) >= timeline::kMostMarks ||
            instants >= kMostInstants;
   }
 
@@ -225,8 +235,10 @@ Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording) {
   MarkCollector collector(recording.first_ns());
   TakeFrame(recording.LastOf(kPlayedSimulation, "characters", recording.first_ns(), true),
             collector);
-  recording.Visit(kPlayedSimulation, "events",
-                  [&collector](const PlacedTick& placed) { collector.OnTick(placed); });
+  for (std::size_t server = 0; server < PlayedServers().size(); ++server) {
+    recording.Visit(server, "events",
+                    [&collector](const PlacedTick& placed) { collector.OnTick(placed); });
+  }
   if (collector.too_many()) {
     return InvalidData(recording.path() + ": too many events; at most " +
                        std::to_string(timeline::kMostMarks) + " failures are read");

@@ -30,6 +30,7 @@ struct LiveControls {
   WindowMouse mouse;
   FullScreen full_screen;
   std::string pressed;  ///< Capital letters of keys that the loop has yet to look at.
+  int markers = 0;      ///< Sent so far.
 };
 
 LiveControls& ControlsOfLive(GLFWwindow* window) {
@@ -82,6 +83,17 @@ void Say(scene::Model& model, const std::string& text) {
   model.last.note = note;
 }
 
+/// A marker from the key E.
+void Mark(LiveControls& controls, Background& background, scene::Model& model) {
+  const std::string server = scene::MarkedServer(model);
+  if (server.empty()) {
+    return Say(model,
+               "Key E (a marker in the recordings): works only on the machine where a server runs, "
+               "while it is connected.");
+  }
+  background.SendTo(server, MarkerCommand(++controls.markers));
+}
+
 /// The keys that send a command; a key that does nothing now says why.
 void Answer(LiveControls& controls, const Options& options, Background& background,
             scene::Model& model, std::size_t& next_subject) {
@@ -90,6 +102,8 @@ void Answer(LiveControls& controls, const Options& options, Background& backgrou
   for (const char key : std::exchange(controls.pressed, "")) {
     if (const std::string why = scene::WhyNoKey(key, context); !why.empty()) {
       Say(model, why);
+    } else if (key == 'E') {
+      Mark(controls, background, model);
     } else if (key == 'T') {
       background.SendTo(kSimulation, TPoseCommand());
     } else if (scene::ChangesMode(key)) {
@@ -287,6 +301,14 @@ Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>&
 v1::Command TPoseCommand() {
   v1::Command command;
   command.mutable_calibrate_t_pose()->set_character(1);
+  return command;
+}
+
+v1::Command MarkerCommand(int number) {
+  v1::Command command;
+  command.mutable_marker()->set_text("viewer mark " + std::to_string(number));
+  // The key works on this machine only, where the server has the same clock.
+  command.mutable_marker()->set_host_ns(clock::MonotonicNs());
   return command;
 }
 

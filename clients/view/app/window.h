@@ -60,6 +60,8 @@ Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>&
 
 /// Forgets the T-pose of the first character.
 v1::Command TPoseCommand();
+/// A marker of the person at the viewer, now; `number` counts them.
+v1::Command MarkerCommand(int number);
 /// The other mode, or the mode with or without a part, as the key has it (M, L, U, B, K).
 v1::Command ModeCommand(char key, const scene::BodyState& body);
 

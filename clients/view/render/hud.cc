@@ -306,6 +306,7 @@ constexpr float kLegendGap = 14;
 constexpr ImU32 kJumpColour = IM_COL32(178, 140, 255, 255);
 constexpr ImU32 kTransitionColour = IM_COL32(244, 130, 206, 255);
 constexpr ImU32 kTaskColour = IM_COL32(84, 226, 214, 255);
+constexpr ImU32 kMarkerColour = IM_COL32(120, 180, 255, 255);
 
 float LanesHeight(std::size_t lanes) {
   const auto count = static_cast<float>(std::max<std::size_t>(1, lanes));
@@ -336,6 +337,9 @@ std::vector<Sign> LegendOf(const timeline::Timeline& line) {
     signs.push_back({colour::kText, "finish"});
   }
   if (!line.tasks.empty()) signs.push_back({kTaskColour, "task done"});
+  if (!line.markers.empty()) {
+    signs.push_back({kMarkerColour, "marker " + std::to_string(line.markers.size())});
+  }
   return signs;
 }
 
@@ -403,6 +407,11 @@ void DrawLane(const Paint& p, const Box& lane, const Box& groove, const timeline
   }
   for (const timeline::TaskMark& task : line.tasks) {
     DrawTask(p, lane, ColumnOf(groove, whole, task.at_s));
+  }
+  for (const timeline::MarkerMark& marker : line.markers) {
+    const float x = ColumnOf(groove, whole, marker.at_s);
+    p.list->AddRectFilled({x - 0.75f * s, lane.low.y - 3 * s}, {x + 0.75f * s, lane.high.y + 3 * s},
+                          kMarkerColour);
   }
 }
 

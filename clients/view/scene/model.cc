@@ -596,7 +596,7 @@ struct LiveKey {
   Of of;
 };
 
-constexpr std::array<LiveKey, 20> kLiveKeys{{
+constexpr std::array<LiveKey, 21> kLiveKeys{{
     {"?", "show or hide this list", Of::kAll},
     {"H", "hide or show the panels", Of::kAll},
     {"F11", "full screen, or a window again", Of::kAll},
@@ -615,6 +615,7 @@ constexpr std::array<LiveKey, 20> kLiveKeys{{
     {"K", "with or without the clean-up of the feet", Of::kPerson},
     {"O", "the true pose beside the body, or over it", Of::kPerson},
     {"V", "the preview of the camera", Of::kAll},
+    {"E", "a marker in the recordings", Of::kAll},
     {"C", "calibrate where the camera stands; X ends it", Of::kAll},
     {"space", "freeze the picture", Of::kAll},
 }};
@@ -653,13 +654,27 @@ Engine EngineOf(const Model& model) {
   return model.playout.Newest().characters.front().body ? Engine::kPerson : Engine::kBiped;
 }
 
+namespace {
+
+/// The server is connected, on this machine.
+bool IsLiveHere(const Model& model, const char* server_id) {
+  return std::any_of(model.links.begin(), model.links.end(), [server_id](const LinkReport& link) {
+    return link.server_id == server_id && link.state == LinkState::kLive &&
+           link.address.rfind("unix:", 0) == 0;
+  });
+}
+
+}  // namespace
+
 KeyContext ContextOf(const Model& model, bool has_subjects, bool calibrates) {
-  const bool may_command =
-      std::any_of(model.links.begin(), model.links.end(), [](const LinkReport& link) {
-        return link.server_id == "footing-sim" && link.state == LinkState::kLive &&
-               link.address.rfind("unix:", 0) == 0;
-      });
-  return {EngineOf(model), has_subjects, calibrates, may_command};
+  return {EngineOf(model), has_subjects, calibrates, IsLiveHere(model, "footing-sim")};
+}
+
+std::string MarkedServer(const Model& model) {
+  for (const char* server_id : {"footingd", "footing-sim"}) {
+    if (IsLiveHere(model, server_id)) return server_id;
+  }
+  return "";
 }
 
 std::vector<KeyLine> LiveKeyLines(const KeyContext& context) {

@@ -291,6 +291,10 @@ struct KeyContext {
 /// Conditions of the keys in the present state.
 KeyContext ContextOf(const Model& model, bool has_subjects, bool calibrates);
 
+/// The server that gets a marker of the key E: footingd, or else footing-sim, connected on this
+/// machine; empty: neither is.
+std::string MarkedServer(const Model& model);
+
 /// A line of the list of keys.
 struct KeyLine {
   std::string key;

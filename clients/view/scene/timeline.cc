@@ -53,12 +53,39 @@ Timeline Shifted(Timeline timeline, double zero_s) {
   timeline.end_s -= zero_s;
   for (FailureMark& failure : timeline.failures) failure.at_s -= zero_s;
   for (TaskMark& task : timeline.tasks) task.at_s -= zero_s;
+  for (MarkerMark& marker : timeline.markers) marker.at_s -= zero_s;
   for (TrialMark& trial : timeline.trials) {
     trial.begin_s -= zero_s;
     if (trial.start_s) *trial.start_s -= zero_s;
     if (trial.end_s) *trial.end_s -= zero_s;
   }
   return timeline;
+}
+
+std::vector<TrialMark> TrialsOf(const std::vector<MarkerMark>& markers) {
+  constexpr std::string_view kBegin = "begin ", kEnd = "end ";
+  std::vector<TrialMark> trials;
+  for (const MarkerMark& marker : markers) {
+    const std::string_view text = marker.text;
+    if (text.starts_with(kBegin) && text.size() > kBegin.size()) {
+      TrialMark trial;
+      trial.id = text.substr(kBegin.size());
+      trial.number = trials.size() + 1;
+      trial.begin_s = marker.at_s;
+      trial.start_s = marker.at_s;
+      trial.phase = stream::TrialPhase::kRunning;
+      trials.push_back(trial);
+    } else if (text.starts_with(kEnd)) {
+      const auto begun = std::find_if(trials.rbegin(), trials.rend(), [&](const TrialMark& trial) {
+        return trial.id == text.substr(kEnd.size());
+      });
+      if (begun == trials.rend() || begun->end_s) continue;
+      begun->end_s = marker.at_s;
+      begun->phase = stream::TrialPhase::kFinished;
+      begun->time_s = marker.at_s - begun->begin_s;
+    }
+  }
+  return trials;
 }
 
 std::optional<double> NextFailure(const Timeline& timeline, double at_s) {
@@ -128,6 +155,9 @@ Timeline Only(const Timeline& timeline, const TrialMark& trial) {
   }
   for (const TaskMark& task : timeline.tasks) {
     if (within(task.at_s)) only.tasks.push_back(task);
+  }
+  for (const MarkerMark& marker : timeline.markers) {
+    if (within(marker.at_s)) only.markers.push_back(marker);
   }
   return only;
 }
@@ -282,6 +312,7 @@ Timeline Joined(const Timeline& first, const Timeline& second) {
   const auto earlier = [](const auto& a, const auto& b) { return a.at_s < b.at_s; };
   joined.failures = Merged(first.failures, second.failures, earlier);
   joined.tasks = Merged(first.tasks, second.tasks, earlier);
+  joined.markers = Merged(first.markers, second.markers, earlier);
   joined.trials = Merged(first.trials, second.trials, [](const TrialMark& a, const TrialMark& b) {
     return a.begin_s < b.begin_s;
   });
@@ -355,6 +386,11 @@ std::vector<std::string> MarkLines(const Timeline& timeline) {
   }
   for (const TaskMark& task : timeline.tasks) {
     marks.emplace_back(task.at_s, "task " + task.task + " done");
+  }
+  for (const MarkerMark& marker : timeline.markers) {
+    marks.emplace_back(marker.at_s,
+                       "marker: " + marker.text +
+                           (marker.value ? " (" + text::Shortest(*marker.value) + ")" : ""));
   }
   std::stable_sort(marks.begin(), marks.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -30,6 +30,13 @@ struct TaskMark {
   std::string task;
 };
 
+/// A client marked this instant.
+struct MarkerMark {
+  double at_s = 0;
+  std::string text;
+  std::optional<double> value;
+};
+
 /// One trial, from when it was made ready to its end.
 struct TrialMark {
   std::string id;            ///< Empty: nobody gave it one.
@@ -43,16 +50,22 @@ struct TrialMark {
   double time_s = 0;                                      ///< Its clock then.
 };
 
-/// Trials, failures and tasks of a recording, s from its zero.
+/// Trials, failures, tasks and markers of a recording, s from its zero.
 struct Timeline {
   double begin_s = 0;
   double end_s = 0;
   std::vector<TrialMark> trials;  ///< By time, as all marks.
   std::vector<FailureMark> failures;
   std::vector<TaskMark> tasks;
+  std::vector<MarkerMark> markers;
 
   double length_s() const { return end_s - begin_s; }
 };
+
+/// The trials that markers frame: "begin NAME" begins one and "end NAME" ends it, for tasks that
+/// another program leads. Its clock starts where it begins. One that is begun again before its end
+/// is another trial; an end without a beginning is a marker only.
+std::vector<TrialMark> TrialsOf(const std::vector<MarkerMark>& markers);
 
 /// Marks of one timeline: more are refused before memory is taken.
 inline constexpr std::size_t kMostMarks = 100'000;

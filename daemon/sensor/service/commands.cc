@@ -91,8 +91,9 @@ v1::CommandResult CarryOutAllowed(Hub& hub, const Config& config, std::uint64_t 
       return CarryOutSetup(hub, session, command);
     case v1::Command::kTakeLease:
     case v1::Command::kReleaseLease:
-    case v1::Command::kListSessions:  // The server answers these two itself.
+    case v1::Command::kListSessions:  // The server answers these three itself.
     case v1::Command::kEndSessions:
+    case v1::Command::kMarker:
     case v1::Command::ACTION_NOT_SET:
       return Answer(command, UsageError("the command has no action that footingd knows"));
   }

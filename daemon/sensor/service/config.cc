@@ -198,9 +198,10 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.channels.push_back(monitoring::StatsChannel());
   options.tick_rate_hz = config.tick_rate_hz;
   options.sessions = config.sessions;
-  options.capabilities = {"features", "boards", "raw",      "rumble", "leds", "assign",
-                          "nunchuk",  "camera", "sphere",   "setup",  "tare", "mounting",
-                          "layout",   "hands",  "contacts", "lease"};
+  options.capabilities = {"features", "boards", "raw",      "rumble", "leds",   "assign",
+                          "nunchuk",  "camera", "sphere",   "setup",  "tare",   "mounting",
+                          "layout",   "hands",  "contacts", "lease",  "markers"};
+  options.takes_markers = true;
   if (!SessionSources(config).empty()) options.capabilities.push_back("devices");
   return options;
 }
@@ -244,6 +245,7 @@ std::vector<transport::Channel> Channels() {
           {"raw", Tick::kRawFieldNumber, false},
           {"nunchuk", Tick::kNunchukFieldNumber, false},
           {"camera", Tick::kCameraFieldNumber, false},
+          {"events", Tick::kEventsFieldNumber, false},
           {"setup", Tick::kSetupFieldNumber, true},
           {"hands", Tick::kHandsFieldNumber, false},
           {"reference", Tick::kReferenceFieldNumber, false},

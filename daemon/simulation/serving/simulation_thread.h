@@ -190,6 +190,8 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     options.tick_rate_hz = line.frame_rate_hz();
     options.sessions = config.sessions;
     options.capabilities = line.Capabilities();
+    options.capabilities.push_back("markers");
+    options.takes_markers = true;
     return options;
   }
 

@@ -74,6 +74,17 @@ TEST(CsvTable, WhatAMessageDoesNotHaveIsAnEmptyCell) {
             "0,0,0,0,0.1,0,0,0,0,0,0,0,0,0,0,0\n0,0,0,0,,,,0,0,0,0,0,0,0,0,0\n");
 }
 
+TEST(CsvTable, ANumberThatIsOptionalAndAbsentIsNotZero) {
+  v1::Events events;
+  events.add_events()->mutable_marker()->set_value(0);
+  events.add_events()->mutable_marker()->set_client("c");
+  CsvTable table(*events.GetDescriptor());
+  ASSERT_TRUE(table.Learn(events).ok());
+  EXPECT_THAT(table.Header(), testing::EndsWith(",marker_value,marker_received_ns,marker_client"));
+  EXPECT_THAT(Rows(table, events), testing::HasSubstr(",0,0,\n"));
+  EXPECT_THAT(Rows(table, events), testing::EndsWith(",,0,c\n"));
+}
+
 TEST(CsvTable, TextIsQuotedWhereItMustBeAndNumbersThatAreNoneAreEmpty) {
   v1::DeviceStatusList list;
   v1::DeviceStatus& status = *list.add_devices();

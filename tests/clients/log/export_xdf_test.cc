@@ -213,6 +213,36 @@ TEST_F(ExportXdfTest, TheTimesOfTablesRiseStrictlyToo) {
   }
 }
 
+TEST_F(ExportXdfTest, MarkersAreTheirTextsAndTimesRise) {
+  {
+    test::MadeRecording recording(Path("a.mcap"));
+    recording.Begin("footingd");
+    const auto add = [&recording](std::uint64_t sequence, std::int64_t event_ns,
+                                  v1::Event::Kind kind, const std::string& text) {
+      v1::Tick tick;
+      tick.set_sequence(sequence);
+      tick.set_host_ns(static_cast<std::int64_t>(sequence) * 10'000'000);
+      v1::Event& event = *tick.mutable_events()->add_events();
+      event.set_kind(kind);
+      event.set_host_ns(event_ns);
+      event.set_text(text);
+      if (text == "valued") event.mutable_marker()->set_value(2.5);
+      recording.Add(tick);
+    };
+    add(10, 100'000'000, v1::Event::KIND_TASK, "jump");
+    add(11, 95'000'000, v1::Event::KIND_MARKER, "stimulus");
+    add(12, 111'000'000, v1::Event::KIND_MARKER, "valued");
+  }
+  const auto exported = ExportXdf(Path("a.mcap"), Path("out"), false);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  ASSERT_EQ(xdf_.load_xdf(exported->path), 0);
+  ASSERT_EQ(xdf_.eventMap.size(), 3u);
+  EXPECT_EQ(xdf_.eventMap[0].first.first, "stimulus");
+  EXPECT_NEAR(xdf_.eventMap[0].first.second, 0.095, 1e-9);
+  EXPECT_EQ(xdf_.eventMap[1].first.first, "KIND_TASK: jump");
+  EXPECT_EQ(xdf_.eventMap[2].first.first, "valued 2.5");
+}
+
 TEST_F(ExportXdfTest, NeverOverwritesUnlessToldAndRefusesACutRecording) {
   WriteSampleRecording(Path("a.mcap"), true);
   ASSERT_TRUE(ExportXdf(Path("a.mcap"), Path("out"), false).ok());

@@ -41,6 +41,26 @@ TEST(LiveKeys, OnlyTheKeysOfTheConnectedEngineAreListed) {
   EXPECT_THAT(KeysOf({}), HasSubstr(" mouse "));
 }
 
+TEST(LiveKeys, AMarkerGoesToFootingdOrElseToFootingSimOnThisMachine) {
+  EXPECT_THAT(KeysOf(Person()), HasSubstr(" E "));
+  Model model;
+  EXPECT_EQ(MarkedServer(model), "");
+  const auto link = [](const std::string& address, const std::string& server, LinkState state) {
+    LinkReport report;
+    report.address = address;
+    report.server_id = server;
+    report.state = state;
+    return report;
+  };
+  model.links = {link("unix:/a", "footing-sim", LinkState::kLive),
+                 link("unix:/b", "footingd", LinkState::kConnecting)};
+  EXPECT_EQ(MarkedServer(model), "footing-sim");
+  model.links[1].state = LinkState::kLive;
+  EXPECT_EQ(MarkedServer(model), "footingd");
+  model.links = {link("tcp:192.168.1.5:7000", "footingd", LinkState::kLive)};
+  EXPECT_EQ(MarkedServer(model), "");
+}
+
 TEST(LiveKeys, KeysThatNeedAFileAreListedWithIt) {
   EXPECT_THAT(KeysOf(Person()), HasSubstr(" C "));
   const std::string without = KeysOf({Engine::kPerson, false, false, true});

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "common/base/units.h"
@@ -67,6 +68,33 @@ class RecordedMarksTest : public ::testing::Test {
   std::optional<recording::RecordingWriter> writer_;
   std::uint32_t sequence_ = 0;
 };
+
+TEST_F(RecordedMarksTest, MarkersOfBothServersAreMarksAndFrameATrial) {
+  const auto mark = [this](const std::string& server, double time_s, const std::string& text) {
+    v1::Events events;
+    v1::Event& event = *events.add_events();
+    event.set_kind(v1::Event::KIND_MARKER);
+    event.set_host_ns(RoundToNanoseconds(time_s - 0.25));  // The sender's time.
+    event.set_text(text);
+    if (text == "stimulus") event.mutable_marker()->set_value(7);
+    const std::int64_t at_ns = RoundToNanoseconds(time_s);
+    ASSERT_TRUE(writer_->Write("/" + server + "/events", events, {at_ns, at_ns, ++sequence_}));
+  };
+  mark("footing-sim", 3, "begin sway");
+  mark("footingd", 4, "stimulus");
+  mark("footing-sim", 9, "end sway");
+  const auto marks = Marks();
+  ASSERT_TRUE(marks.ok());
+  const timeline::Timeline& line = marks->timeline;
+  ASSERT_EQ(line.markers.size(), 3u);
+  EXPECT_EQ(line.markers[1].text, "stimulus");
+  EXPECT_EQ(line.markers[1].value, 7);
+  EXPECT_EQ(line.markers[1].at_s, 0.75);  // From the first tick, at 3 s.
+  ASSERT_EQ(line.trials.size(), 1u);
+  EXPECT_EQ(line.trials[0].id, "sway");
+  EXPECT_EQ(line.trials[0].time_s, 6);
+  EXPECT_TRUE(std::is_sorted(marks->notes_ns.begin(), marks->notes_ns.end()));
+}
 
 TEST_F(RecordedMarksTest, ARestartedServerBeginsAnotherTrialOfTheSameName) {
   Trial(0, "p07", TrialPhase::kReady);

@@ -22,6 +22,28 @@ TEST(TimelineTest, FailuresAreFoundBothWaysAndNotWhereOneStands) {
   EXPECT_EQ(PreviousFailure(line, 20), std::nullopt);
 }
 
+TEST(TimelineTest, MarkersFrameTrialsAndStayMarks) {
+  Timeline line;
+  line.end_s = 100;
+  line.markers = {{10, "begin p07-1", {}},
+                  {12, "stimulus", 3.5},
+                  {40, "end p07-1", {}},
+                  {45, "end p07-1", {}},
+                  {50, "begin p07-2", {}}};
+  line.trials = TrialsOf(line.markers);
+  ASSERT_EQ(line.trials.size(), 2u);
+  EXPECT_EQ(line.trials[0].id, "p07-1");
+  EXPECT_EQ(line.trials[0].begin_s, 10);
+  EXPECT_EQ(line.trials[0].end_s, 40);
+  EXPECT_EQ(line.trials[0].time_s, 30);
+  EXPECT_EQ(line.trials[1].end_s, std::nullopt);
+  const Timeline only = Only(line, line.trials[0]);
+  ASSERT_EQ(only.markers.size(), 3u);  // With the two seconds behind the end, as of every trial.
+  EXPECT_EQ(Shifted(only, 10).markers[1].at_s, 2);
+  EXPECT_THAT(MarkLines(only), ::testing::Contains(HasSubstr("0:12.0  marker: stimulus (3.5)")));
+  EXPECT_EQ(Joined(only, line).markers.size(), 8u);
+}
+
 TEST(TimelineTest, TrialsAreFoundByPositionNameAndNumber) {
   const Timeline line = SampleTimeline();
   EXPECT_EQ(TrialAt(line, 9), nullptr);

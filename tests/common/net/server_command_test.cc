@@ -1,5 +1,8 @@
+#include <limits>
+
 #include <unistd.h>
 
+#include "common/base/units.h"
 #include "tests/common/net/server_fixture.h"
 
 namespace footing::transport {
@@ -182,6 +185,97 @@ TEST_F(ServerCommandTest, ATextWithControlCharactersIsRefusedBeforeItIsCarriedOu
   EXPECT_FALSE(result.ok());
   EXPECT_NE(result.message().find("assign_role.rig has control characters"), std::string::npos);
   EXPECT_TRUE(commands_.empty());
+}
+
+/// A server with the channels of footing-sim that concern markers.
+ServerOptions WithMarkers() {
+  ServerOptions options;
+  options.server_id = "test-server";
+  options.channels = {{"events", v1::Tick::kEventsFieldNumber, false}};
+  options.takes_markers = true;
+  return options;
+}
+
+v1::Envelope MarkerOf(std::uint64_t id, const std::string& text, std::int64_t host_ns = 0) {
+  v1::Envelope message;
+  message.mutable_command()->set_id(id);
+  message.mutable_command()->mutable_marker()->set_text(text);
+  message.mutable_command()->mutable_marker()->set_host_ns(host_ns);
+  return message;
+}
+
+TEST_F(ServerCommandTest, MarkersOfTheRolesLogAndAboveAreEventsOfTheNextTick) {
+  StartServer(WithMarkers());
+  const auto viewer = Subscribed(Subscribe());
+  now_ns_ = 500 * kNanosecondsPerSecond;
+  v1::Envelope valued = MarkerOf(1, "stimulus \u00e9", 499 * kNanosecondsPerSecond);
+  valued.mutable_command()->mutable_marker()->set_value(2.5);
+  EXPECT_TRUE(Call(*WithRole(v1::ROLE_LOG, 1), valued).ok());
+  EXPECT_TRUE(Call(*WithRole(v1::ROLE_CONTROL), MarkerOf(1, "second")).ok());
+  const v1::CommandResult refused = Call(*WithRole(v1::ROLE_VIEW), MarkerOf(1, "third"));
+  EXPECT_FALSE(refused.ok());
+  EXPECT_NE(refused.message().find("a marker needs the role log"), std::string::npos);
+  EXPECT_TRUE(commands_.empty());  // The program behind the server has nothing to do with it.
+
+  v1::Events own;
+  own.add_events()->set_text("own");
+  server_->Publish(now_ns_, {{v1::Tick::kEventsFieldNumber, own.SerializeAsString()}});
+  server_->Publish(now_ns_, {});
+  ASSERT_TRUE(RunUntil([&] { return viewer->Sequences().size() == 2; }));
+  const v1::Events& events = viewer->messages[viewer->messages.size() - 2].tick().events();
+  ASSERT_EQ(events.events_size(), 3);
+  EXPECT_EQ(events.events(0).text(), "own");
+  EXPECT_EQ(events.events(1).kind(), v1::Event::KIND_MARKER);
+  EXPECT_EQ(events.events(1).text(), "stimulus \u00e9");
+  EXPECT_EQ(events.events(1).host_ns(), 499 * kNanosecondsPerSecond);
+  EXPECT_EQ(events.events(1).marker().received_ns(), 500 * kNanosecondsPerSecond);
+  EXPECT_EQ(events.events(1).marker().value(), 2.5);
+  EXPECT_EQ(events.events(1).marker().client(), "test");
+  EXPECT_EQ(events.events(2).host_ns(), 500 * kNanosecondsPerSecond);  // Its arrival.
+  EXPECT_FALSE(events.events(2).marker().has_value());
+  EXPECT_FALSE(viewer->messages.back().tick().has_events());
+}
+
+TEST_F(ServerCommandTest, AMarkerThatIsTooLongOrOfAnotherClockIsRefused) {
+  StartServer(WithMarkers());
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  now_ns_ = 500 * kNanosecondsPerSecond;
+  std::uint64_t id = 0;
+  EXPECT_TRUE(Call(*client, MarkerOf(++id, std::string(MarkerQueue::kMostBytes, 'a'))).ok());
+  const auto why = [&](const std::string& text, std::int64_t host_ns) {
+    const v1::CommandResult result = Call(*client, MarkerOf(++id, text, host_ns));
+    EXPECT_FALSE(result.ok());
+    return result.message();
+  };
+  EXPECT_NE(why(std::string(MarkerQueue::kMostBytes + 1, 'a'), 0).find("1025 bytes"),
+            std::string::npos);
+  EXPECT_NE(why("", 0).find("0 bytes"), std::string::npos);
+  EXPECT_NE(why("two\nlines", 0).find("control characters"), std::string::npos);
+  for (const std::int64_t host_ns :
+       {std::int64_t{439} * kNanosecondsPerSecond, std::int64_t{502} * kNanosecondsPerSecond,
+        std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    EXPECT_NE(why("late", host_ns).find("CLOCK_MONOTONIC"), std::string::npos) << host_ns;
+  }
+  StartServer();
+  EXPECT_NE(Call(*WithRole(v1::ROLE_CONTROL), MarkerOf(1, "a")).message().find("takes no markers"),
+            std::string::npos);
+}
+
+TEST(MarkerQueue, MoreThanATickTakesAreRefusedUntilItIsPublished) {
+  MarkerQueue queue;
+  v1::Marker marker;
+  marker.set_text("a");
+  for (int i = 0; i < MarkerQueue::kMostWaiting; ++i) {
+    ASSERT_TRUE(queue.Add(marker, "test", 1).ok());
+  }
+  const auto more = queue.Add(marker, "test", 1);
+  ASSERT_FALSE(more.ok());
+  EXPECT_NE(more.error().message.find("send it again"), std::string::npos);
+  std::vector<ChannelBytes> channels;
+  queue.MoveTo(channels);
+  EXPECT_TRUE(queue.empty());
+  ASSERT_EQ(channels.size(), 1u);
+  EXPECT_TRUE(queue.Add(marker, "test", 1).ok());
 }
 
 TEST_F(ServerCommandTest, PingIsAnsweredWithFourStamps) {

@@ -72,6 +72,15 @@ void WriteTrial(const std::string& path) {
   }
 }
 
+/// A marker of a client, with the time of its sender: 1 s before the tick.
+void AddMarker(v1::Tick& tick) {
+  v1::Event& marker = *tick.mutable_events()->add_events();
+  marker.set_kind(v1::Event::KIND_MARKER);
+  marker.set_host_ns(tick.host_ns() - kSecondNs);
+  marker.set_text("stimulus");
+  marker.mutable_marker()->set_value(4);
+}
+
 std::vector<std::string> SystemsOf(const RecordedMotion& motion) {
   std::vector<std::string> names;
   for (const MotionTable& table : motion.tables) names.push_back(table.tracksys);
@@ -100,6 +109,35 @@ class ReadMotionTest : public testing::Test {
   }
   test::TemporaryFolder folder_;
 };
+
+TEST_F(ReadMotionTest, MarkersOfAnyServerAreEventsByTimeWhereTheyAreWanted) {
+  {
+    test::MadeRecording recording(folder_.Path("a.mcap"));
+    recording.Begin("footing-sim", 60 * kSecondNs, 1000 * kSecondNs);
+    v1::Tick tick = TickAt(1, 60 * kSecondNs);
+    AddCharacter("", tick);
+    recording.Add(tick);
+    tick = TickAt(2, 62 * kSecondNs);
+    v1::Event& fall = *tick.mutable_events()->add_events();
+    fall.set_kind(v1::Event::KIND_FALL);
+    fall.set_host_ns(tick.host_ns());
+    recording.Add(tick);
+    recording.Begin("footingd", 10 * kSecondNs, 1000 * kSecondNs);
+    tick = TickAt(1, 12 * kSecondNs);
+    AddMarker(tick);
+    recording.Add(tick);
+  }
+  const auto with = Read({.markers = true});
+  ASSERT_TRUE(with.ok()) << with.error().message;
+  ASSERT_EQ(with->events.size(), 2u);
+  EXPECT_EQ(with->events[0].trial_type, "stimulus");
+  EXPECT_EQ(with->events[0].onset_s, 1);
+  EXPECT_EQ(with->events[0].value, 4);
+  EXPECT_EQ(with->events[1].onset_s, 2);
+  const auto without = Read({});  // As of a study, whose export names nobody.
+  ASSERT_EQ(without->events.size(), 1u);
+  EXPECT_FALSE(without->events[0].is_marker);
+}
 
 TEST_F(ReadMotionTest, AWholeRecordingBeginsAtItsFirstTickWithEveryDevice) {
   WriteTrial(folder_.Path("a.mcap"));

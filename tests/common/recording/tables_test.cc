@@ -48,6 +48,25 @@ TEST(Bids, EventsSayWhichFailuresCount) {
             "1.500\t0\tfailure_jump\tno\n2.000\t0\ttask_done\tyes\n");
 }
 
+TEST(Bids, MarkersHaveTheirTextAsTypeAndAPairOfThemIsASpan) {
+  const auto marker = [](double onset_s, const std::string& text) {
+    Event event{onset_s, text, true};
+    event.is_marker = true;
+    return event;
+  };
+  std::vector<Event> events = {{0.5, "trial_ready", true}, marker(1, "begin eyes closed"),
+                               marker(2, "stimulus"),      marker(31.5, "end eyes closed"),
+                               marker(32, "end unknown"),  marker(33, "begin second")};
+  events[2].value = 3.5;
+  EXPECT_EQ(EventsTsv(WithSpans(events)),
+            "onset\tduration\ttrial_type\tcounts\tvalue\n"
+            "0.500\t0\ttrial_ready\tyes\tn/a\n"
+            "1.000\t30.500\teyes closed\tyes\tn/a\n"
+            "2.000\t0\tstimulus\tyes\t3.5\n"
+            "32.000\t0\tend unknown\tyes\tn/a\n"
+            "33.000\t0\tbegin second\tyes\tn/a\n");
+}
+
 TEST(Bids, LabelsHaveLettersAndDigitsAndInstantsCountFrom1900) {
   EXPECT_EQ(LabelOf("wrist.straight1"), "wriststraight1");
   EXPECT_EQ(ShiftedTime(0), "1900-01-01T00:00:00");
