@@ -1,8 +1,6 @@
 #include "clients/log/commands.h"
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -19,6 +17,7 @@
 #include "clients/log/export_bodies.h"
 #include "clients/log/export_xdf.h"
 #include "clients/log/osc_out.h"
+#include "clients/log/record.h"
 #include "common/base/json_text.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
@@ -73,20 +72,9 @@ void Print(const ordered_json& out, bool json) {
 }
 
 Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::string>& addresses) {
-  for (const std::string& text : addresses) {
-    const Result<transport::Address> address = transport::ParseAddress(text);
-    if (!address) return address.error();
-    const bool again = std::any_of(
-        options.addresses.begin(), options.addresses.end(),
-        [&](const transport::Address& other) { return other.Text() == address->Text(); });
-    if (again)
-      return UsageError("--connect " + text + " is named twice: each message would be, too");
-    options.addresses.push_back(*address);
-  }
-  if (addresses.empty()) {
-    options.addresses = {transport::DefaultAddress("sensor"),
-                         transport::DefaultAddress("simulation")};
-  }
+  auto parsed = RecordedAddresses(addresses);
+  if (!parsed) return parsed.error();
+  options.addresses = std::move(*parsed);
   options.version = cli::Version();
   const Result<RecordReport> report = Record(options);
   if (!report) return report.error();
@@ -763,178 +751,6 @@ Result<RecalibrateReport> Recalibrate(const std::string& input, const std::strin
   Copier copier(*out, tracker, X_WC, library);
   mcap::Walk(in->bytes(), copier.Visitor(), mcap::WalkMode::kStrict);
   return copier.Finish();
-}
-
-namespace {
-
-namespace asio = boost::asio;
-
-constexpr auto kFlushPeriod = std::chrono::milliseconds(50);
-constexpr auto kCatchUpPeriod = std::chrono::milliseconds(5);
-constexpr std::int64_t kLongestCatchUpNs = 2'000'000'000;
-constexpr auto kProgressPeriod = std::chrono::seconds(5);
-constexpr std::size_t kMostAttachmentBytes = 16u << 20;
-
-/// One recording: the file, the links to its servers, and the timers.
-class Recording {
- public:
-  Recording(asio::io_context& io, recording::RecordingWriter writer, const RecordOptions& options)
-      : io_(io),
-        options_(options),
-        writer_(std::move(writer)),
-        flush_(io),
-        progress_(io),
-        catch_up_(io),
-        end_(io, [this] { CatchUp(clock::MonotonicNs()); }) {}
-
-  Result<RecordReport> Run() {
-    Keep(
-        recording::DescribeRecording(writer_, "footing-log", options_.version, options_.addresses));
-    for (const std::string& path : options_.attachments) Keep(Attach(path));
-    if (!written_) return written_.error();
-    for (const transport::Address& address : options_.addresses) Link(address);
-    for (const auto& link : links_) link->Start();
-    end_.After(options_.seconds, [this] { CatchUp(clock::MonotonicNs()); });
-    FlushLater();
-    ProgressLater();
-    io_.run();
-    return Finish();
-  }
-
- private:
-  Result<void> Attach(const std::string& path) {
-    const Result<std::string> bytes = config::ReadTextFile(path, kMostAttachmentBytes);
-    if (!bytes) return bytes.error();
-    const std::filesystem::path name(path);
-    const bool json = name.extension() == ".json";
-    return writer_.Attach(name.filename().string(),
-                          json ? "application/json" : "application/octet-stream", *bytes,
-                          clock::MonotonicNs());
-  }
-
-  void Link(const transport::Address& address) {
-    recording::ServerRecorderOptions server;
-    server.address = address;
-    server.client_name = "footing-log";
-    server.from_ring_start = options_.from_ring;
-    server.on_written = [this](Result<void> written) { Keep(std::move(written)); };
-    server.on_link = [](const recording::StreamRecorder& recorder) {
-      std::cerr << recorder.address() << ": " << recorder.link() << std::endl;
-    };
-    server.on_notice = [](const recording::StreamRecorder& recorder) {
-      std::cerr << recorder.address() << ": notice: " << recorder.notice() << std::endl;
-    };
-    links_.push_back(
-        std::make_unique<recording::ServerRecorder>(io_, writer_, names_, std::move(server)));
-  }
-
-  /// Remembers the first failure of the file, and ends.
-  void Keep(Result<void> written) {
-    if (!written && written_) {
-      written_ = std::move(written);
-      End();
-    }
-  }
-
-  void FlushLater() {
-    flush_.After(kFlushPeriod, [this] {
-      const std::int64_t now_ns = clock::MonotonicNs();
-      if (!writer_.pending()) written_down_ns_ = now_ns;
-      if (now_ns - written_down_ns_ >= recording::kLongestUnwrittenNs) {
-        Keep(writer_.Flush());
-        written_down_ns_ = now_ns;
-      }
-      FlushLater();
-    });
-  }
-
-  void ProgressLater() {
-    progress_.After(kProgressPeriod, [this] {
-      std::cerr << writer_.path() << ": " << writer_.statistics().message_count << " messages";
-      for (const auto& link : links_) {
-        const recording::StreamRecorder& recorder = link->recorder();
-        std::cerr << ", " << recorder.address() << " " << recorder.ticks() << " ticks";
-        if (recorder.missing_ticks() > 0) {
-          std::cerr << " (" << recorder.missing_ticks() << " missing)";
-        }
-      }
-      std::cerr << std::endl;
-      ProgressLater();
-    });
-  }
-
-  /// Ends once everything has come that was sent up to then, or soon.
-  void CatchUp(std::int64_t until_ns) {
-    const bool has_all = std::all_of(links_.begin(), links_.end(),
-                                     [&](const auto& link) { return link->HasAllUntil(until_ns); });
-    if (has_all || clock::MonotonicNs() - until_ns > kLongestCatchUpNs) return End();
-    end_.cancel();
-    catch_up_.After(kCatchUpPeriod, [this, until_ns] { CatchUp(until_ns); });
-  }
-
-  void End() {
-    for (const auto& link : links_) link->Stop();
-    io_.stop();
-  }
-
-  Result<RecordReport> Finish() {
-    if (!written_) {
-      return Failure(written_.error().message +
-                     (writer_.empty() ? "; nothing was recorded"
-                                      : "; what was written before is kept: footing-log repair " +
-                                            writer_.path() + " --out NEW.mcap"));
-    }
-    RecordReport report;
-    std::string waited_for;
-    bool any_reached = false;
-    for (const auto& link : links_) {
-      if (const Result<void> ended = link->End(); !ended) return ended.error();
-      const recording::StreamRecorder& recorder = link->recorder();
-      report.ticks += recorder.ticks();
-      report.missing_ticks += recorder.missing_ticks();
-      waited_for +=
-          (waited_for.empty() ? "" : ", ") + recorder.address() + " (" + recorder.link() + ")";
-      any_reached = any_reached || recorder.reached();
-    }
-    const mcap::Statistics& statistics = writer_.statistics();
-    if (statistics.message_count == 0) {
-      const std::string why =
-          "nothing came to record from " + waited_for + "; " + writer_.path() + " was not written";
-      return any_reached ? Failure(why)
-                         : NoDevice(why + "; start the server, or name it with --connect");
-    }
-    if (const Result<void> finished = writer_.Finish(); !finished) return finished.error();
-    report.messages = statistics.message_count;
-    report.duration_s = 1e-9 * static_cast<double>(statistics.message_end_time_ns -
-                                                   statistics.message_start_time_ns);
-    return report;
-  }
-
-  asio::io_context& io_;
-  const RecordOptions& options_;
-  recording::RecordingWriter writer_;
-  recording::ServerNames names_;
-  std::vector<std::unique_ptr<recording::ServerRecorder>> links_;
-  Result<void> written_;
-  std::int64_t written_down_ns_ = clock::MonotonicNs();
-  timer::Timer flush_;
-  timer::Timer progress_;
-  timer::Timer catch_up_;
-  service_manager::ProgramEnd end_;
-};
-
-}  // namespace
-
-Result<RecordReport> Record(const RecordOptions& options) {
-  recording::WriterSettings settings;
-  settings.library = "footing-log " + options.version;
-  settings.replace = options.replace;
-  settings.chunks.compress = options.compress;
-  Result<recording::RecordingWriter> writer =
-      recording::RecordingWriter::Create(options.out, settings);
-  if (!writer) return writer.error();
-  asio::io_context io;
-  return Recording(io, std::move(*writer), options).Run();
 }
 
 }  // namespace footing::log_client
