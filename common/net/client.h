@@ -63,12 +63,18 @@ struct ClockOffset {
   std::int64_t uncertainty_ns = 0;  ///< Half the round trip: the truth is within.
 };
 
+/// A server's clock that seems to differ by less is our own: no two hosts start so close together.
+inline constexpr std::int64_t kSameClockNs = 5'000'000;
+
 /// An instant of ours on the clock of the server at that address, such as for a marker; 0: the
-/// clock's offset is not known yet. Over a Unix socket it is the same clock.
+/// clock's offset is not known yet. On one host it is the same clock, and an estimate of its offset
+/// would only add its own error, which is milliseconds on a busy host.
 inline std::int64_t OnServersClock(const Address& address, const ClockOffset& clock,
                                    std::int64_t our_ns) {
   if (address.kind == Address::Kind::kUnix) return our_ns;
-  return clock.valid ? our_ns + clock.offset_ns : 0;
+  if (!clock.valid) return 0;
+  const bool same = clock.offset_ns < kSameClockNs && clock.offset_ns > -kSameClockNs;
+  return same ? our_ns : our_ns + clock.offset_ns;
 }
 
 /// Calls that a client makes for each message and change of its link.

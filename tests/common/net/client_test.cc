@@ -5,6 +5,16 @@
 namespace footing::transport {
 namespace {
 
+TEST(OnServersClock, TheOffsetCountsBetweenHostsOnly) {
+  const Address unix_address = *ParseAddress("unix:/a"), tcp = *ParseAddress("tcp:127.0.0.1:7000");
+  const std::int64_t far_ns = 3'600'000'000'000;
+  EXPECT_EQ(OnServersClock(unix_address, {}, 100), 100);
+  EXPECT_EQ(OnServersClock(tcp, {}, 100), 0);
+  EXPECT_EQ(OnServersClock(tcp, {true, far_ns, 0}, 100), far_ns + 100);
+  EXPECT_EQ(OnServersClock(tcp, {true, -far_ns, 0}, 100), 100 - far_ns);
+  EXPECT_EQ(OnServersClock(tcp, {true, 1'800'000, 0}, 100), 100);  // As seen on a busy host.
+}
+
 TEST_F(ClientTest, BeforeItsServerItSaysWhatItWaitsForAndThenConnects) {
   StartClient(ClientOn(UnixAddress()));
   ASSERT_TRUE(RunUntil([&] { return !states_.empty(); }));
