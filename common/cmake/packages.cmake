@@ -7,22 +7,25 @@
 # | footing-simulation | footing-sim, its units and config file                                       |
 # | footing-clients    | every other program: a new one needs no line here                            |
 # | footing-common     | data, messages (.proto), documentation, completion, the user and the group   |
+# | python3-footing    | the Python package and its examples                                          |
 # | footing            | nothing: needs the others                                                    |
 set(sources ${CMAKE_CURRENT_LIST_DIR}/packages)
 set(made ${CMAKE_BINARY_DIR}/packaging)
 set(FOOTING_PACKAGE_CONTACT "Footing maintainers <maintainers@footing.example>" CACHE STRING
     "Who answers for the packages, NAME <ADDRESS>")
-set(packages common daemon simulation clients all)
+set(packages common daemon simulation clients python all)
 set(daemon_components footingd)
 set(simulation_components footing-sim)
 set(common_components completion data documentation system_user)
+set(python_components python)
 set(all_components "")
 # The text of the licence is part of Debian, and a package says so in its copyright file.
 set(unpackaged licence Unspecified)
 
 function(list_client_components out)
   get_cmake_property(components COMPONENTS)
-  list(REMOVE_ITEM components ${daemon_components} ${simulation_components} ${common_components} ${unpackaged})
+  list(REMOVE_ITEM components ${daemon_components} ${simulation_components} ${common_components} ${python_components}
+       ${unpackaged})
   set(${out} ${components} PARENT_SCOPE)
 endfunction()
 list_client_components(clients_components)
@@ -35,6 +38,8 @@ foreach(package IN LISTS packages)
   set(name footing-${package})
   if(package STREQUAL "all")
     set(name footing)
+  elseif(package STREQUAL "python")
+    set(name python3-footing)
   endif()
   string(TOUPPER ${package} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
@@ -68,6 +73,7 @@ function(add_scripts package upper)
 endfunction()
 set(CONFIG_FILE "")
 add_scripts(common COMMON common)
+add_scripts(python PYTHON python)
 set(UNITS "footingd.socket footingd-devices.socket footingd.service")
 set(UNITS_TO_STOP "${UNITS} footingd-metrics.socket")
 set(CONFIG_FILE /etc/footing/footingd.json)
@@ -109,11 +115,15 @@ set(CPACK_PROJECT_CONFIG_FILE ${sources}/version.cmake)
 foreach(upper DAEMON SIMULATION CLIENTS)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON)
 endforeach()
-foreach(upper COMMON ALL)
+foreach(upper COMMON PYTHON ALL)
   set(CPACK_DEBIAN_${upper}_PACKAGE_ARCHITECTURE all)
 endforeach()
 set(CPACK_DEBIAN_COMMON_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers | systemd-sysusers")
 set(CPACK_DEBIAN_COMMON_PACKAGE_SUGGESTS bash-completion)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.9), python3-protobuf (>= 3.20.3)")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-numpy)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "footing, python3-matplotlib, python3-pandas, python3-zstandard")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_DAEMON_PACKAGE_RECOMMENDS "bluez, udev")
 # Opened at run time: the fonts of the screens, and what draws where there is no graphics card.
 set(CPACK_DEBIAN_CLIENTS_PACKAGE_RECOMMENDS "fonts-dejavu-core, libgl1-mesa-dri")
@@ -132,6 +142,8 @@ set(about_simulation "simulation server" "This package has footing-sim, which dr
 person, as a service that its first client starts.")
 set(about_clients "viewer, console and tools" "This package has the viewer, the console, recording, studies, the terrain
 game, the device simulator, evaluation and training.")
+set(about_python "Python package" "This package reads live samples and recordings, sends commands and simulates
+devices from Python 3.")
 set(about_all "all programs" "This metapackage needs the packages of all programs and servers.")
 foreach(package IN LISTS packages)
   string(TOUPPER ${package} upper)

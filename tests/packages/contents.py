@@ -13,7 +13,8 @@ import tempfile
 import debian
 
 # What a package says of itself; and what of `cmake --install` a package leaves to Debian's own copy.
-OF_A_PACKAGE = re.compile(r"usr/share/(doc/(?P<package>footing[a-z-]*)/(copyright|changelog\.gz)|lintian/overrides/.*)")
+OF_A_PACKAGE = re.compile(r"usr/share/(doc/(footing[a-z-]*|python3-footing)/(copyright|changelog\.gz)|lintian/overrides/.*)"
+                          r"|usr/(lib/python3/dist-packages|share/doc/python3-footing)/.*")
 UNPACKAGED = {"usr/share/doc/footing/LICENSE"}
 PLACES = {
     "footing-daemon": {"usr/bin/footingd", "usr/lib/systemd/system/footingd.service",
@@ -30,11 +31,15 @@ PLACES = {
     "footing-common": {"usr/lib/sysusers.d/footing.conf", "usr/share/footing/biped.json",
                        "usr/share/footing/proto/footing/v1/session.proto", "usr/share/doc/footing/docs/setup.md",
                        "usr/share/bash-completion/completions/footing"},
+    "python3-footing": {"usr/lib/python3/dist-packages/footing/session.py", "usr/lib/python3/dist-packages/footing/py.typed",
+                        "usr/lib/python3/dist-packages/footing/v1/session_pb2.py",
+                        "usr/lib/python3/dist-packages/footing/v1/session_pb2.pyi",
+                        "usr/share/doc/python3-footing/examples/live_cop.py"},
     "footing": set(),
 }
 # Of the same version: the packages of one build belong together.
 NEEDED = {"footing": ("footing-clients", "footing-daemon", "footing-simulation"), "footing-common": (),
-          "footing-clients": ("footing-common",), "footing-daemon": ("footing-common",),
+          "python3-footing": (), "footing-clients": ("footing-common",), "footing-daemon": ("footing-common",),
           "footing-simulation": ("footing-common",)}
 
 

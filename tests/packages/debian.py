@@ -4,7 +4,8 @@ import re
 import stat
 import subprocess
 
-PACKAGES = ("footing", "footing-clients", "footing-common", "footing-daemon", "footing-simulation")
+PACKAGES = ("footing", "footing-clients", "footing-common", "footing-daemon", "footing-simulation",
+            "python3-footing")
 
 
 def run(*words, timeout_s=300, **options):
