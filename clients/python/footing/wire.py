@@ -134,6 +134,10 @@ class Wire:
             raise ConnectionError(f"{self.address} announces a message of {size} bytes: it is not a Footing server")
         return self._take(size)
 
+    def waits(self) -> bool:
+        """Whether a message, or part of one, is there."""
+        return bool(self._rest) or bool(select.select([self._socket], [], [], 0)[0])
+
     def _take(self, size: int) -> bytes:
         while len(self._rest) < size:
             piece = self._read()
