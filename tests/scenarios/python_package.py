@@ -75,9 +75,16 @@ def check_readers(stage):
     running = {name: start_example(name, *words) for name, *words in (
         ("live_cop.py", 2), ("react_to_swing.py", 3), ("psychopy_task.py", 2),
         ("unity_bridge.py", f"127.0.0.1:{receiver.getsockname()[1]}", 2), *([("sway.py", 4)] if numpy else []))}
+    sys.path.append(str(EXAMPLES))
+    import matlab_bridge
+    live = matlab_bridge.Live("boards")
     joints = json.loads(receiver.recv(65536))["joints"]
     assert all(len(numbers) == 7 and abs(sum(q * q for q in numbers[3:]) - 1) < 1e-6 for numbers in joints.values()), joints
     assert 0.5 < joints["body"][1] < 1.5, f"the body is not at its height along Unity's y: {joints['body']}"
+    time.sleep(0.5)
+    columns = live.take()
+    live.close()
+    assert len(columns["time_s"]) == len(columns["total_n"]) > 10 and abs(columns["total_n"][-1] - WEIGHT_N) < 1, columns
     out = {name: output_of(process) for name, process in running.items()}
     assert re.search(rf"{WEIGHT_N - 1}\.\d|{WEIGHT_N}\.\d N \|.*o", out["live_cop.py"]), out["live_cop.py"]
     delays_ms = [float(one) for one in re.findall(r"answered after ([\d.]+) ms", out["react_to_swing.py"])]

@@ -40,7 +40,7 @@ class Live:
 
     def take(self):
         blocks, self._blocks = [one for one in self._blocks if len(one)], []
-        names = [name for name in (blocks[0].names if blocks else []) if not name.startswith("device_")]
+        names = [name for name in (blocks[0].names if blocks else []) if not isinstance(blocks[0][name][0], (str, bytes))]
         return {name: array.array("d", [float(value) for one in blocks for value in one[name]]) for name in names}
 
     def close(self):

@@ -269,7 +269,7 @@ class Table:
                 if channel in ROWS else {}
             rows += [(ns, number, {**outer, **flatten(row)})
                      for row in (getattr(message, ROWS[channel]) if channel in ROWS else [message])]
-        columns = _columns_of([cells for _, _, cells in rows])
+        columns = _columns_of([cells for _, _, cells in rows]) if rows else _no_rows(_row_type(channel), lambda *_: [])
         at_ns = [own or ns for own, (ns, _, _) in zip(columns.get("sampled_ns", [0] * len(rows)), rows)]
         head = {"time_s": [(ns - zero_ns) * 1e-9 for ns in at_ns], "sequence": [number for _, number, _ in rows]}
         kept = {name: values for name, values in columns.items()
@@ -283,7 +283,10 @@ class Table:
         # So many at once that what is worked on stays in the processor's cache.
         tables = [cls._of_batch(channel, parts[i:i + _BATCH], host_ns[i:i + _BATCH], sequence[i:i + _BATCH], zero_ns, fields)
                   for i in range(0, max(1, len(parts)), _BATCH)]
-        return cls(_joined([table.columns for table in tables]), _enums_of(channel)) if len(tables) > 1 else tables[0]
+        table = cls(_joined([table.columns for table in tables]), _enums_of(channel)) if len(tables) > 1 else tables[0]
+        if not len(table):
+            table.columns.update(_no_rows(_row_type(channel), _blank))
+        return table
 
     @classmethod
     def _of_batch(cls, channel: str, parts: Sequence[bytes], host_ns: Sequence[int], sequence: Sequence[int], zero_ns: int,
@@ -416,9 +419,21 @@ def _message_type(channel: str) -> Any:
     return session_pb2.Tick.DESCRIPTOR.fields_by_name[channel].message_type
 
 
+def _row_type(channel: str) -> Any:
+    message = _message_type(channel)
+    return message.fields_by_name[ROWS[channel]].message_type if channel in ROWS else message
+
+
+def _no_rows(descriptor: Any, column: Callable[[str, int], Any], prefix: str = "") -> Dict[str, Any]:
+    """Columns of no rows: a block in which nothing came has them, too."""
+    found = {}
+    for field in descriptor.fields:
+        if not _repeated(field):
+            found.update(_no_rows(field.message_type, column, f"{prefix}{field.name}_") if field.message_type else
+                         {prefix + field.name: column(_kind(field), 0)})
+    return found
+
+
 def _enums_of(channel: str) -> Dict[str, Any]:
     """Enums of a row's own fields by their column."""
-    row = _message_type(channel)
-    if channel in ROWS:
-        row = row.fields_by_name[ROWS[channel]].message_type
-    return {field.name: field.enum_type for field in row.fields if field.enum_type and not _repeated(field)}
+    return {field.name: field.enum_type for field in _row_type(channel).fields if field.enum_type and not _repeated(field)}

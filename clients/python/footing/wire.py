@@ -114,6 +114,9 @@ class Wire:
         self.address = address
         try:
             self._socket = _open(address, timeout_s)
+        except PermissionError as error:
+            raise Refused(f"{address}: permission denied; join the group that owns the socket, footing for that of the service: "
+                          "sudo usermod -aG footing $USER, then log in again") from error
         except OSError as error:
             remedy = f"start {program}" if address.startswith("unix:") else f"start {program} there with --listen {address}"
             raise NotRunning(f"no {program} at {address} ({error}): {remedy}, or pass another address") from error

@@ -117,6 +117,10 @@ class Columns(unittest.TestCase):
         with self.assertRaises(ValueError):
             footing.Table.of_bytes("motion", [whole[:-3]], [0], [0], 0)
 
+    def test_a_block_in_which_nothing_came_has_the_columns(self):
+        table = footing.Table.of_messages("motion", [], 0)
+        self.assertEqual((len(table), len(table["specific_force_mps2_x"]), len(table["buttons"])), (0, 0, 0))
+
     def test_units_are_in_the_names(self):
         table = footing.Table.of_messages("motion", [(0, 0, MOTION[0])], 0)
         self.assertEqual([table.unit(name) for name in ("time_s", "specific_force_mps2_x", "buttons")], ["s", "m/s^2", ""])
@@ -134,12 +138,14 @@ class Columns(unittest.TestCase):
         kept, columns.np = columns.np, None
         try:
             with_lists = footing.Table.of_messages("motion", held, 10**9, ["specific_force_mps2", "buttons"])
+            nothing = footing.Table.of_messages("motion", [], 0)
             second = with_lists.where(keep=[device == 2 for device in with_lists["device"]])
             with self.assertRaisesRegex(ImportError, "needs NumPy"):
                 with_lists.array(["buttons"])
         finally:
             columns.np = kept
         self.assertEqual(second["buttons"], [0, 1, 2, 3, 4])
+        self.assertEqual(list(nothing["specific_force_mps2_x"]), [])
         for name in ("time_s", "specific_force_mps2_x", "buttons"):
             self.assertEqual(list(with_arrays[name]), with_lists[name], name)
 
