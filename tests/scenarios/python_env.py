@@ -8,6 +8,7 @@ Usage: python_env.py BINARY_FOLDER
 """
 import os
 import pathlib
+import re
 import signal
 import sys
 import time
@@ -100,6 +101,16 @@ def check_devices(programs):
         assert hashes[0] == hashes[1], "devices of equal seeds give other bits"
 
 
+def check_page(programs):
+    """The lines of docs/python.md run as they stand, with the programs on PATH."""
+    page = (pathlib.Path(__file__).resolve().parents[2] / "docs/python.md").read_text()
+    lines = re.search(r"```python\n(from footing.env.*?)```", page, re.S)[1]
+    os.environ["PATH"] = programs + os.pathsep + os.environ["PATH"]
+    found = {}
+    exec(compile(lines, "docs/python.md", "exec"), found)
+    assert found["info"]["distance_m"] > 3, found["info"]
+
+
 def check_errors(programs):
     for wrong, words in ((dict(programs="/nowhere"), "no footing-sim on PATH"), (dict(rate_hz=100), "at most 40"),
                          (dict(track="moon"), "moon"), (dict(gaits="fast"), "fast")):
@@ -132,6 +143,7 @@ def main():
     check_speed(programs)
     check_ends(programs)
     check_devices(programs)
+    check_page(programs)
     check_errors(programs)
     return 0
 

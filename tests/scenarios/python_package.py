@@ -43,6 +43,13 @@ def start_example(name, *words):
                             stderr=subprocess.PIPE, env=dict(os.environ, PYTHONPATH=str(ROOT / "clients/python")))
 
 
+def start_page():
+    """The first lines of docs/python.md that run."""
+    lines = re.search(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), re.S)[1]
+    return subprocess.Popen([sys.executable, "-B", "-c", lines], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            env=dict(os.environ, PYTHONPATH=str(ROOT / "clients/python")))
+
+
 def output_of(process):
     out, error = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0, f"{process.args}: {process.returncode}\n{out}\n{error}"
@@ -75,6 +82,7 @@ def check_readers(stage):
     running = {name: start_example(name, *words) for name, *words in (
         ("live_cop.py", 2), ("react_to_swing.py", 3), ("psychopy_task.py", 2),
         ("unity_bridge.py", f"127.0.0.1:{receiver.getsockname()[1]}", 2), *([("sway.py", 4)] if numpy else []))}
+    running["page"] = start_page()
     sys.path.append(str(EXAMPLES))
     import matlab_bridge
     live = matlab_bridge.Live("boards")
@@ -86,6 +94,7 @@ def check_readers(stage):
     live.close()
     assert len(columns["time_s"]) == len(columns["total_n"]) > 10 and abs(columns["total_n"][-1] - WEIGHT_N) < 1, columns
     out = {name: output_of(process) for name, process in running.items()}
+    assert "left_hand" in out["page"] and len(out["page"].splitlines()) > 300, out["page"][-500:]
     assert re.search(rf"{WEIGHT_N - 1}\.\d|{WEIGHT_N}\.\d N \|.*o", out["live_cop.py"]), out["live_cop.py"]
     delays_ms = [float(one) for one in re.findall(r"answered after ([\d.]+) ms", out["react_to_swing.py"])]
     assert len(delays_ms) > 2 and "left_hand" in out["react_to_swing.py"], out["react_to_swing.py"]
@@ -159,6 +168,18 @@ def check_bids(recording, folder):
     assert len(table) == len(own) and run.subject == "01" and run.units["latency"] == "s", (len(table), len(own), run)
     assert run.units["top_left"] == "N" and max(abs(a - b) for a, b in zip(table["top_left"], own["top_left_n"])) < 0.01
     assert max(abs(a - b) for a, b in zip(table["time_s"], own["time_s"])) < 1e-3
+
+
+def check_lease():
+    with footing.connect(role="control") as one, footing.connect(role="control") as other:
+        with one.lease("the first"):
+            one.command(put_back={})
+            try:
+                other.command(put_back={})
+                raise AssertionError("a command goes through another session's lease")
+            except footing.Refused as error:
+                assert "the first has the lease" in str(error), error
+        other.command(put_back={})
 
 
 def check_character(stage):
@@ -276,6 +297,7 @@ def main():
         stage.stop("footing-stream")
         with concurrent.futures.ThreadPoolExecutor() as beside:
             recording = beside.submit(check_recording, stage, path)
+            check_lease()
             check_character(stage)
             recording.result()
         check_tls(port)

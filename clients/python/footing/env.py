@@ -3,7 +3,7 @@
     from footing.env import Walk
     with Walk(track="2", rate_hz=20) as env:
         observation, info = env.reset(seed=1)
-        for _ in range(400):
+        for _ in range(200):
             observation, reward, terminated, truncated, info = env.step({"gait": 1, "speed": 1.2, "turn": 0.0})
 """
 import math

@@ -300,8 +300,9 @@ class Client:
     def blocks(self, channel: str, every_s: float = 0.1, role: Optional[str] = None, fields: Optional[Sequence[str]] = None,
                seconds: Optional[float] = None) -> Iterator[Table]:
         """Every so many seconds a Table of what has come since; it may be empty. The way to live plots and filters."""
-        due, held, session = time.monotonic() + every_s, [], self._sessions[0]
-        for session, tick in self._receive([channel], 0, seconds, every_s / 4):
+        due, held = time.monotonic() + every_s, []
+        session = next((one for one in self._sessions if channel in one.welcome.channels), self._sessions[0])
+        for _, tick in self._receive([channel], 0, seconds, every_s / 4):
             if tick is not None and not tick.snapshot and tick.HasField(channel):
                 held.append((tick.host_ns, tick.sequence, getattr(tick, channel)))
             if time.monotonic() >= due:
@@ -368,7 +369,7 @@ class Client:
             raise NotRunning(f"{name} is a command of {program}, which this client is not connected to: start {program}")
         result = targets[0].command(command, timeout_s)
         if not result.ok:
-            raise Refused(f"{name}: {result.message}")
+            raise Refused(result.message if result.message.startswith(name) else f"{name}: {result.message}")
         return result
 
     def find(self, device: Union[str, int]) -> device_pb2.DeviceStatus:
@@ -391,7 +392,7 @@ class Client:
             wanted = dict(holder=holder, seconds=_LEASE_S, take_over=take_over)
             result = session.command(command_pb2.Command(take_lease=wanted), 10)
             if not result.ok:
-                raise Refused(f"the lease of {session.program}: {result.message}")
+                raise Refused(result.message)
             session.renew(holder)
         return _Lease(self._sessions)
 
