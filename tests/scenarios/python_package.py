@@ -124,6 +124,7 @@ def check_recording(stage, path):
         left = recording.table("motion", device="main/left_hand", fields=["specific_force_mps2"])
         assert len(left) > 100 and set(left["device_role"]) == {"left_hand"}, left
         check_bids(recording, stage.folder / "bids")
+        assert set(recording.table("/footingd/events")["text"]) & {"left", "right"}, "psychopy_task.py's markers are not there"
         if numpy:
             even = recording.array("boards", ["cop_x_m", "cop_y_m"], rate_hz=50, role="left_board")
             assert abs(numpy.hypot(*even[50:-50].T).mean() / RADIUS_M - 1) < 0.05, even

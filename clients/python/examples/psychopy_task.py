@@ -33,9 +33,11 @@ def reaction(f, shown_ns, within_s=2):
     return "", float("nan")
 
 
-with footing.connect() as f:
+with footing.connect(role="log") as f:
     for trial in range(int(sys.argv[1]) if len(sys.argv) > 1 else 10):
         time.sleep(random.uniform(0.5, 1.0))
         side = random.choice(["left", "right"])
-        role, delay_s = reaction(f, show(side))
+        shown_ns = show(side)
+        f.mark(side, trial + 1)  # In every recording, and in its exports.
+        role, delay_s = reaction(f, shown_ns)
         print(f"trial {trial + 1}: {side}, answered {role or 'not'}, {delay_s:.3f} s", flush=True)

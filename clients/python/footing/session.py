@@ -361,10 +361,10 @@ class Client:
         command = command_pb2.Command(**action)
         name = command.WhichOneof("action") or ""
         program = "footing-sim" if name in _OF_SIMULATION else "footingd"
-        if self.role not in ("ROLE_CONTROL", "ROLE_ADMIN"):
+        if name != "marker" and self.role not in ("ROLE_CONTROL", "ROLE_ADMIN"):
             raise FootingError(f"{name} needs footing.connect(role=\"control\")")
         targets = [one for one in self._sessions if one.welcome.server_id == program] or (
-            self._sessions if name in ("list_sessions", "end_sessions") else [])
+            self._sessions if name in ("marker", "list_sessions", "end_sessions") else [])
         if not targets:
             raise NotRunning(f"{name} is a command of {program}, which this client is not connected to: start {program}")
         result = targets[0].command(command, timeout_s)
@@ -416,6 +416,11 @@ class Client:
 
     def release_gait(self) -> None:
         self.command(direct_gait=dict(release=True))
+
+    def mark(self, text: str, value: Optional[float] = None) -> None:
+        """A marker of this instant in every recording and export. A pair "begin NAME", "end NAME" frames a trial.
+        Needs connect(role="log") or above."""
+        self.command(marker=dict(text=text) if value is None else dict(text=text, value=value))
 
     def start_trial(self, trial: str, track: str = "", seed: int = 0, task: str = "") -> None:
         self.command(start_trial=dict(trial=trial, track=track, seed=seed, task=task))

@@ -290,7 +290,7 @@ class EffectiveConfig(_message.Message):
     def __init__(self, json: _Optional[str] = ...) -> None: ...
 
 class Event(_message.Message):
-    __slots__ = ["by_operator", "character", "device", "failure", "failure_cause", "gait", "host_ns", "kind", "response", "segment_refused", "text", "trial"]
+    __slots__ = ["by_operator", "character", "device", "failure", "failure_cause", "gait", "host_ns", "kind", "marker", "response", "segment_refused", "text", "trial"]
     class Kind(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = []
     BY_OPERATOR_FIELD_NUMBER: _ClassVar[int]
@@ -307,6 +307,7 @@ class Event(_message.Message):
     KIND_FIELD_NUMBER: _ClassVar[int]
     KIND_GAIT_CHANGED: Event.Kind
     KIND_LEASE: Event.Kind
+    KIND_MARKER: Event.Kind
     KIND_PUT_BACK: Event.Kind
     KIND_RESPONSE: Event.Kind
     KIND_STREAM_BACK: Event.Kind
@@ -314,6 +315,7 @@ class Event(_message.Message):
     KIND_TASK: Event.Kind
     KIND_TRIAL: Event.Kind
     KIND_UNSPECIFIED: Event.Kind
+    MARKER_FIELD_NUMBER: _ClassVar[int]
     RESPONSE_FIELD_NUMBER: _ClassVar[int]
     SEGMENT_REFUSED_FIELD_NUMBER: _ClassVar[int]
     TEXT_FIELD_NUMBER: _ClassVar[int]
@@ -326,11 +328,22 @@ class Event(_message.Message):
     gait: Gait
     host_ns: int
     kind: Event.Kind
+    marker: EventMarker
     response: ResponseStages
     segment_refused: bool
     text: str
     trial: TrialState
-    def __init__(self, kind: _Optional[_Union[Event.Kind, str]] = ..., host_ns: _Optional[int] = ..., character: _Optional[int] = ..., text: _Optional[str] = ..., gait: _Optional[_Union[Gait, str]] = ..., response: _Optional[_Union[ResponseStages, _Mapping]] = ..., device: _Optional[int] = ..., failure_cause: _Optional[_Union[FailureCause, str]] = ..., by_operator: bool = ..., failure: _Optional[_Union[Failure, _Mapping]] = ..., trial: _Optional[_Union[TrialState, _Mapping]] = ..., segment_refused: bool = ...) -> None: ...
+    def __init__(self, kind: _Optional[_Union[Event.Kind, str]] = ..., host_ns: _Optional[int] = ..., character: _Optional[int] = ..., text: _Optional[str] = ..., gait: _Optional[_Union[Gait, str]] = ..., response: _Optional[_Union[ResponseStages, _Mapping]] = ..., device: _Optional[int] = ..., failure_cause: _Optional[_Union[FailureCause, str]] = ..., by_operator: bool = ..., failure: _Optional[_Union[Failure, _Mapping]] = ..., trial: _Optional[_Union[TrialState, _Mapping]] = ..., segment_refused: bool = ..., marker: _Optional[_Union[EventMarker, _Mapping]] = ...) -> None: ...
+
+class EventMarker(_message.Message):
+    __slots__ = ["client", "received_ns", "value"]
+    CLIENT_FIELD_NUMBER: _ClassVar[int]
+    RECEIVED_NS_FIELD_NUMBER: _ClassVar[int]
+    VALUE_FIELD_NUMBER: _ClassVar[int]
+    client: str
+    received_ns: int
+    value: float
+    def __init__(self, value: _Optional[float] = ..., received_ns: _Optional[int] = ..., client: _Optional[str] = ...) -> None: ...
 
 class Events(_message.Message):
     __slots__ = ["events"]

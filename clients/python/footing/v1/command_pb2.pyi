@@ -42,7 +42,7 @@ class CalibrateTPose(_message.Message):
     def __init__(self, character: _Optional[int] = ...) -> None: ...
 
 class Command(_message.Message):
-    __slots__ = ["append_segment", "assign_role", "calibrate_t_pose", "correct_failure", "deadline_ms", "direct_gait", "end_sessions", "id", "list_sessions", "push", "put_back", "record_setup", "release_lease", "request_device_status", "set_board_layout", "set_camera", "set_game", "set_interface", "set_leds", "set_pose_mode", "set_rumble", "set_sphere", "set_study", "set_subject", "show_prompt", "solve_mounting", "start_trial", "stop_trial", "take_lease", "tare"]
+    __slots__ = ["append_segment", "assign_role", "calibrate_t_pose", "correct_failure", "deadline_ms", "direct_gait", "end_sessions", "id", "list_sessions", "marker", "push", "put_back", "record_setup", "release_lease", "request_device_status", "set_board_layout", "set_camera", "set_game", "set_interface", "set_leds", "set_pose_mode", "set_rumble", "set_sphere", "set_study", "set_subject", "show_prompt", "solve_mounting", "start_trial", "stop_trial", "take_lease", "tare"]
     APPEND_SEGMENT_FIELD_NUMBER: _ClassVar[int]
     ASSIGN_ROLE_FIELD_NUMBER: _ClassVar[int]
     CALIBRATE_T_POSE_FIELD_NUMBER: _ClassVar[int]
@@ -52,6 +52,7 @@ class Command(_message.Message):
     END_SESSIONS_FIELD_NUMBER: _ClassVar[int]
     ID_FIELD_NUMBER: _ClassVar[int]
     LIST_SESSIONS_FIELD_NUMBER: _ClassVar[int]
+    MARKER_FIELD_NUMBER: _ClassVar[int]
     PUSH_FIELD_NUMBER: _ClassVar[int]
     PUT_BACK_FIELD_NUMBER: _ClassVar[int]
     RECORD_SETUP_FIELD_NUMBER: _ClassVar[int]
@@ -82,6 +83,7 @@ class Command(_message.Message):
     end_sessions: EndSessions
     id: int
     list_sessions: ListSessions
+    marker: Marker
     push: Push
     put_back: PutBack
     record_setup: RecordSetup
@@ -103,7 +105,7 @@ class Command(_message.Message):
     stop_trial: StopTrial
     take_lease: TakeLease
     tare: Tare
-    def __init__(self, id: _Optional[int] = ..., deadline_ms: _Optional[int] = ..., set_rumble: _Optional[_Union[SetRumble, _Mapping]] = ..., set_leds: _Optional[_Union[SetLeds, _Mapping]] = ..., assign_role: _Optional[_Union[AssignRole, _Mapping]] = ..., put_back: _Optional[_Union[PutBack, _Mapping]] = ..., push: _Optional[_Union[Push, _Mapping]] = ..., direct_gait: _Optional[_Union[DirectGait, _Mapping]] = ..., tare: _Optional[_Union[Tare, _Mapping]] = ..., solve_mounting: _Optional[_Union[SolveMounting, _Mapping]] = ..., set_board_layout: _Optional[_Union[SetBoardLayout, _Mapping]] = ..., record_setup: _Optional[_Union[RecordSetup, _Mapping]] = ..., set_sphere: _Optional[_Union[SetSphere, _Mapping]] = ..., set_camera: _Optional[_Union[SetCamera, _Mapping]] = ..., request_device_status: _Optional[_Union[RequestDeviceStatus, _Mapping]] = ..., append_segment: _Optional[_Union[AppendSegment, _Mapping]] = ..., calibrate_t_pose: _Optional[_Union[CalibrateTPose, _Mapping]] = ..., set_subject: _Optional[_Union[SetSubject, _Mapping]] = ..., set_pose_mode: _Optional[_Union[SetPoseMode, _Mapping]] = ..., start_trial: _Optional[_Union[StartTrial, _Mapping]] = ..., stop_trial: _Optional[_Union[StopTrial, _Mapping]] = ..., correct_failure: _Optional[_Union[CorrectFailure, _Mapping]] = ..., set_interface: _Optional[_Union[SetInterface, _Mapping]] = ..., take_lease: _Optional[_Union[TakeLease, _Mapping]] = ..., release_lease: _Optional[_Union[ReleaseLease, _Mapping]] = ..., set_study: _Optional[_Union[SetStudy, _Mapping]] = ..., list_sessions: _Optional[_Union[ListSessions, _Mapping]] = ..., end_sessions: _Optional[_Union[EndSessions, _Mapping]] = ..., show_prompt: _Optional[_Union[ShowPrompt, _Mapping]] = ..., set_game: _Optional[_Union[SetGame, _Mapping]] = ...) -> None: ...
+    def __init__(self, id: _Optional[int] = ..., deadline_ms: _Optional[int] = ..., set_rumble: _Optional[_Union[SetRumble, _Mapping]] = ..., set_leds: _Optional[_Union[SetLeds, _Mapping]] = ..., assign_role: _Optional[_Union[AssignRole, _Mapping]] = ..., put_back: _Optional[_Union[PutBack, _Mapping]] = ..., push: _Optional[_Union[Push, _Mapping]] = ..., direct_gait: _Optional[_Union[DirectGait, _Mapping]] = ..., tare: _Optional[_Union[Tare, _Mapping]] = ..., solve_mounting: _Optional[_Union[SolveMounting, _Mapping]] = ..., set_board_layout: _Optional[_Union[SetBoardLayout, _Mapping]] = ..., record_setup: _Optional[_Union[RecordSetup, _Mapping]] = ..., set_sphere: _Optional[_Union[SetSphere, _Mapping]] = ..., set_camera: _Optional[_Union[SetCamera, _Mapping]] = ..., request_device_status: _Optional[_Union[RequestDeviceStatus, _Mapping]] = ..., append_segment: _Optional[_Union[AppendSegment, _Mapping]] = ..., calibrate_t_pose: _Optional[_Union[CalibrateTPose, _Mapping]] = ..., set_subject: _Optional[_Union[SetSubject, _Mapping]] = ..., set_pose_mode: _Optional[_Union[SetPoseMode, _Mapping]] = ..., start_trial: _Optional[_Union[StartTrial, _Mapping]] = ..., stop_trial: _Optional[_Union[StopTrial, _Mapping]] = ..., correct_failure: _Optional[_Union[CorrectFailure, _Mapping]] = ..., set_interface: _Optional[_Union[SetInterface, _Mapping]] = ..., take_lease: _Optional[_Union[TakeLease, _Mapping]] = ..., release_lease: _Optional[_Union[ReleaseLease, _Mapping]] = ..., set_study: _Optional[_Union[SetStudy, _Mapping]] = ..., list_sessions: _Optional[_Union[ListSessions, _Mapping]] = ..., end_sessions: _Optional[_Union[EndSessions, _Mapping]] = ..., show_prompt: _Optional[_Union[ShowPrompt, _Mapping]] = ..., set_game: _Optional[_Union[SetGame, _Mapping]] = ..., marker: _Optional[_Union[Marker, _Mapping]] = ...) -> None: ...
 
 class CommandResult(_message.Message):
     __slots__ = ["id", "message", "more_sessions", "ok", "residual", "sessions", "unit"]
@@ -178,6 +180,16 @@ class ListSessions(_message.Message):
     AFTER_FIELD_NUMBER: _ClassVar[int]
     after: int
     def __init__(self, after: _Optional[int] = ...) -> None: ...
+
+class Marker(_message.Message):
+    __slots__ = ["host_ns", "text", "value"]
+    HOST_NS_FIELD_NUMBER: _ClassVar[int]
+    TEXT_FIELD_NUMBER: _ClassVar[int]
+    VALUE_FIELD_NUMBER: _ClassVar[int]
+    host_ns: int
+    text: str
+    value: float
+    def __init__(self, text: _Optional[str] = ..., value: _Optional[float] = ..., host_ns: _Optional[int] = ...) -> None: ...
 
 class Push(_message.Message):
     __slots__ = ["character", "impulse_x_ns", "impulse_y_ns"]
