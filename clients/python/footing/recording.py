@@ -65,9 +65,15 @@ def _records(data: Any, at: int, end: int) -> Iterator[Tuple[int, int, int]]:
         at += 9 + size
 
 
-def _unpack(compression: str, data: bytes, size: int) -> bytes:
+_MOST_UNPACKED = 256 << 20  # Bytes, as footing-log reads.
+
+
+def _unpack(compression: str, data: bytes, size: int) -> Optional[bytes]:
+    """Nothing when the chunk says that it takes more memory than any recorder gives it."""
     if not compression:
         return data
+    if size > _MOST_UNPACKED:
+        return None
     if compression != "zstd":
         raise FootingError(f"the recording is compressed with {compression!r}, which this package does not read")
     try:
@@ -171,8 +177,13 @@ class Recording:
             self._topics[cursor.text()] = (number, schema)
 
     def _load(self, chunk: _Chunk) -> bytes:
-        records = _unpack(chunk.compression, self._data[chunk.begin:chunk.begin + chunk.size], chunk.whole)
-        if chunk.crc and zlib.crc32(records) != chunk.crc:
+        try:
+            records = _unpack(chunk.compression, self._data[chunk.begin:chunk.begin + chunk.size], chunk.whole)
+        except FootingError:
+            raise
+        except Exception:  # Each module of zstd has an error of its own.
+            records = None
+        if records is None or chunk.crc and zlib.crc32(records) != chunk.crc:
             raise DamagedRecording(f"{self.path} is damaged at byte {chunk.begin}: footing-log repair {self.path} --out "
                                    "whole.mcap keeps the rest")
         return records

@@ -189,6 +189,14 @@ class Recordings(unittest.TestCase):
     def test_chunks_in_zstd_give_the_same(self):
         self.assertEqual(list(self.read(recording(MOTION, compression="zstd"))[2]["buttons"])[-1], 4)
 
+    @unittest.skipIf(zstandard is None, "python3-zstandard is not installed")
+    def test_a_chunk_in_zstd_that_is_damaged_names_the_repair(self):
+        data = bytearray(recording(MOTION, compression="zstd"))
+        at = data.index(b"\x28\xb5\x2f\xfd")
+        data[at + 12:at + 20] = bytes(8)
+        with self.assertRaisesRegex(footing.DamagedRecording, "footing-log repair"):
+            self.read(bytes(data))
+
     @unittest.skipIf(zstandard is not None, "python3-zstandard is installed")
     def test_chunks_in_zstd_name_the_module_that_is_missing(self):
         with self.assertRaisesRegex(footing.FootingError, "python3-zstandard"):
