@@ -30,6 +30,7 @@ void AddRecalibrateCommand(CLI::App& app, Shared& shared);
 void AddServeCommand(CLI::App& app, Shared& shared);
 void AddOscCommand(CLI::App& app, Shared& shared);
 void AddServeControlCommand(CLI::App& app, Shared& shared);
+void AddLslCommand(CLI::App& app, Shared& shared);
 
 /// Counts of one recalibration, for the summary.
 struct RecalibrateReport {

@@ -52,20 +52,6 @@ std::string TextOf(const pb::Message& row, const char* name) {
   return field == nullptr ? "" : row.GetReflection()->GetString(row, field);
 }
 
-/// Such as "KIND_TRIAL: text"; of a client's marker its text alone, and its value behind it.
-std::string EventText(const pb::Message& event) {
-  const auto* kind = FieldOf(event, "kind", pb::FieldDescriptor::CPPTYPE_ENUM);
-  const std::string words = TextOf(event, "text");
-  const std::string name =
-      kind == nullptr ? "" : event.GetReflection()->GetEnum(event, kind)->name();
-  v1::Event marker;
-  if (name == "KIND_MARKER" && marker.ParseFromString(event.SerializeAsString())) {
-    const bool has_value = marker.marker().has_value();
-    return words + (has_value ? " " + text::Shortest(marker.marker().value()) : "");
-  }
-  return words.empty() ? name : name + ": " + words;
-}
-
 }  // namespace
 
 std::int64_t TimeOf(const mcap::Message& record, const pb::Message* row) {
@@ -246,6 +232,19 @@ class XdfExporter {
 };
 
 }  // namespace
+
+std::string EventText(const pb::Message& event) {
+  const auto* kind = FieldOf(event, "kind", pb::FieldDescriptor::CPPTYPE_ENUM);
+  const std::string words = TextOf(event, "text");
+  const std::string name =
+      kind == nullptr ? "" : event.GetReflection()->GetEnum(event, kind)->name();
+  v1::Event marker;
+  if (name == "KIND_MARKER" && marker.ParseFromString(event.SerializeAsString())) {
+    const bool has_value = marker.marker().has_value();
+    return words + (has_value ? " " + text::Shortest(marker.marker().value()) : "");
+  }
+  return words.empty() ? name : name + ": " + words;
+}
 
 Result<ExportedXdf> ExportXdf(const std::string& recording, const std::string& folder,
                               bool replace) {

@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
       "  footing-log recalibrate a.mcap --camera camera.json --out again.mcap\n"
       "  footing-log serve a.mcap --listen unix:/tmp/replay.sock\n"
       "  footing-log osc --to 127.0.0.1:39539 --format vmc\n"
-      "  footing-log serve-control --root study/    # others start and stop recordings");
+      "  footing-log serve-control --root study/    # others start and stop recordings\n"
+      "  footing-log lsl                            # live, to the Lab Streaming Layer");
   footing::log_client::Shared shared;
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");
   app->require_subcommand(1);
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   footing::log_client::AddServeCommand(*app, shared);
   footing::log_client::AddOscCommand(*app, shared);
   footing::log_client::AddServeControlCommand(*app, shared);
+  footing::log_client::AddLslCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

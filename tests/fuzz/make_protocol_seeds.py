@@ -224,10 +224,40 @@ def broker_streams() -> dict[str, bytes]:
     return {f"nats/{name}": string(bytes([0, 3, 200])) + text for name, text in texts.items()}
 
 
+def lsl_streams() -> dict[str, bytes]:
+    """What other programs of the Lab Streaming Layer send: in front the stream's format and what comes."""
+    query, datagram, request, info, feed, samples = range(6)
+    elements = {"name": "B &amp; S", "type": "EEG", "channel_count": "8", "channel_format": "float32", "source_id": "",
+                "nominal_srate": "100", "version": "1.1", "created_at": "5.5", "uid": "1", "session_id": "default",
+                "hostname": "eeg", "v4address": "", "v4data_port": "16574", "v4service_port": "16575", "desc": "<desc>x</desc>"}
+    stamp, texts = b"\x02" + struct.pack("<d", 1.5), b"\x01\x02ab\x01\x02\x01\x00c\x01\x04\x01\x00\x00\x00d\x01\x08\x01" + bytes(7) + b"e"
+    found = {
+        "query": (query, b"name='x' and (starts-with(type,\"E\") or not(contains(uid,'1'))) or channel_count >= 2.5"),
+        "query_wrong": (query, b"desc/x = f('y') and (v4address != 'a' or uid < 1)"),
+        "shortinfo": (datagram, b"LSL:shortinfo\r\ntype='EEG'\r\n16600 4711\r\n"),
+        "timedata": (datagram, b"LSL:timedata\r\n7 10.5\r\n"),
+        "time_answer": (datagram, b" 7 10.5 11 12"),
+        "feed_request": (request, b"LSL:streamfeed/110 uid\r\nValue-Size: 8\r\nHas-IEEE754-Floats: 1\r\nData-Protocol-Version: 110\r\n\r\n"),
+        "fullinfo": (request, b"LSL:fullinfo\r\n"),
+        "shortinfo_tcp": (request, b"LSL:shortinfo\r\nname='name'\r\n"),
+        "old": (request, b"LSL:streamfeed\r\n0 0\r\n"),
+        "info": (info, ("<?xml version=\"1.0\"?>\n<info>" + "".join(
+            f"<{k}>{v}</{k}>" if v else f"<{k} />" for k, v in elements.items()) + "</info>").encode()),
+        "header": (feed, b"LSL/110 200 OK\r\nUID: uid\r\nByte-Order: 1234\r\nData-Protocol-Version: 110\r\n\r\n\x02"),
+        "refusal": (feed, b"LSL/110 404 Not found\r\n"),
+    }
+    streams = {f"lsl/{name}": bytes([1, kind]) + data for name, (kind, data) in found.items()}
+    for form, size in enumerate((4, 8, 0, 4, 2, 1, 8)):
+        values = bytes(size)
+        streams[f"lsl/samples_{form}"] = bytes([form, samples + 12]) + stamp + (values + b"\x01" + values if size else texts)
+    return streams
+
+
 def seeds() -> dict[str, bytes]:
     frames = b"".join(data for _, data in examples()[:1]) + struct.pack("<I", 301)
     return {
         "frames/pieces": string(bytes([1, 4, 9, 0])) + frames,
         "frames/tls": string(b"") + bytes([22, 3, 1, 0, 200, 1, 0, 0, 196]) + bytes(20),
-        **devices(), **attachments(), **broker_streams(), **admissions(), **sessions(), **clients(), **messages(), **filled_messages(), **configs(),
+        **devices(), **attachments(), **broker_streams(),
+        **lsl_streams(), **admissions(), **sessions(), **clients(), **messages(), **filled_messages(), **configs(),
     }

@@ -104,7 +104,7 @@ def seeds() -> dict[str, bytes]:
 
 
 REPLACEMENTS = ["-1", "1e999", "nan", "999999999999", "x", "{", "2 2"]
-TEXT_FROM = {"motion": 1, "config": 2, "nats": 4}  # Bytes in front of the text.
+TEXT_FROM = {"motion": 1, "config": 2, "nats": 4, "lsl": 2}  # Bytes in front of the text.
 VARIED = {"bvh", "asf", "amc", "trc", "mot"}  # Of motion files; the others differ from these already.
 
 
