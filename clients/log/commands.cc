@@ -78,11 +78,16 @@ Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::str
   options.version = cli::Version();
   const Result<RecordReport> report = Record(options);
   if (!report) return report.error();
-  return ordered_json{{"file", options.out},
-                      {"messages", report->messages},
-                      {"ticks", report->ticks},
-                      {"missing_ticks", report->missing_ticks},
-                      {"duration_s", report->duration_s}};
+  ordered_json out{{"file", options.out},
+                   {"messages", report->messages},
+                   {"ticks", report->ticks},
+                   {"missing_ticks", report->missing_ticks},
+                   {"duration_s", report->duration_s}};
+  if (!options.lsl.empty()) {
+    out["lsl_streams"] = report->lsl_streams;
+    out["lsl_samples"] = report->lsl_samples;
+  }
+  return out;
 }
 
 std::optional<BodyFormat> BodyFormatOf(const std::string& format) {
@@ -229,6 +234,9 @@ void AddRecordCommand(CLI::App& app, Shared& shared) {
   command->add_option("--out", options->out, "Output file, MCAP")->required();
   command->add_option("--seconds", options->seconds, "Duration, s (default: until SIGINT)")
       ->check(CLI::Range(0.1, 1e6));
+  command->add_option("--lsl", options->lsl,
+                      "Record the streams of the Lab Streaming Layer that match this query, too; "
+                      "may be repeated, such as --lsl \"type='EEG'\"");
   command->add_option(
       "--attach", options->attachments,
       "File to store in the recording, such as a config or a track; may be repeated");
@@ -242,6 +250,10 @@ void AddRecordCommand(CLI::App& app, Shared& shared) {
                    "zstd)")
       ->check(CLI::IsMember({"zstd", "none"}));
   command->add_flag("--force", options->replace, "Overwrite an existing file");
+  command->footer(
+      "Examples:\n"
+      "  footing-log record --out a.mcap --seconds 60\n"
+      "  footing-log record --out a.mcap --lsl \"type='EEG'\" --lsl \"name='PsychoPy'\"");
   command->callback([options, addresses, compression, &shared] {
     options->compress = *compression == "zstd";
     Finish(RunRecord(*options, *addresses), shared);
@@ -458,7 +470,11 @@ void PrintText(const Contents& contents) {
   }
   for (const mcap::Metadata& metadata : contents.metadata) {
     std::cout << "  " << metadata.name << ":";
-    for (const auto& [key, value] : metadata.values) std::cout << " " << key << "=" << value;
+    for (const auto& [key, value] : metadata.values) {
+      const bool is_line = value.find('\n') == std::string::npos;
+      std::cout << " " << key << "="
+                << (is_line ? value : "(" + std::to_string(value.size()) + " bytes: --json)");
+    }
     std::cout << "\n";
   }
   std::cout.flush();

@@ -15,6 +15,7 @@
 #include <google/protobuf/message.h>
 #include <nlohmann/json.hpp>
 
+#include "clients/log/lsl_in.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/body/angle_deviation.h"
@@ -458,6 +459,10 @@ Result<void> Tables::Learn() {
   };
   visitor.metadata = [this](const mcap::Metadata& metadata) {
     if (metadata.name == "session") notes_.TakeSession(metadata.values);
+    if (metadata.name != lsl::kStreamMetadata) return;
+    const auto topic = metadata.values.find("topic"), info = metadata.values.find("info");
+    if (topic != metadata.values.end() && info != metadata.values.end())
+      lsl_.emplace(topic->second, info->second);
   };
   visitor.message = [this](const mcap::Message& record) {
     TopicTable& topic = topics_[record.channel_id];

@@ -167,6 +167,8 @@ class Tables {
   const std::map<std::uint16_t, TopicTable>& topics() const { return topics_; }
   /// Notes on the whole recording after Learn(); during Walk(), on the part read so far.
   const RowNotes& notes() const { return notes_; }
+  /// Descriptions of the streams of LSL, XML, by topic; after Learn().
+  const std::map<std::string, std::string>& lsl() const { return lsl_; }
 
  private:
   /// A message that waits for older ones of its topic.
@@ -190,6 +192,7 @@ class Tables {
   RowNotes notes_;
   std::map<std::uint16_t, TopicTable> topics_;
   std::map<std::uint16_t, std::vector<Held>> held_;
+  std::map<std::string, std::string> lsl_;
   Result<void> first_failure_;
 };
 

@@ -15,11 +15,13 @@
 #include <google/protobuf/descriptor.h>
 
 #include "clients/log/contents.h"
+#include "clients/log/lsl.h"
 #include "common/base/text.h"
 #include "common/recording/recording_writer.h"
 #include "common/stream/device.h"
 #include "common/stream/hand_frames.h"
 #include "footing/v1/character.pb.h"
+#include "footing/v1/lsl.pb.h"
 
 namespace footing::log_client {
 namespace {
@@ -27,6 +29,8 @@ namespace {
 namespace pb = google::protobuf;
 
 constexpr std::size_t kChunkBytes = 1u << 16;
+/// Numbers of other programs' streams, above those of our own.
+constexpr std::uint32_t kFirstForeign = 1'000'000;
 constexpr std::uint64_t kBoundaryNs = 10'000'000'000;
 
 /// The field of this name, where it is one value of this kind; else null.
@@ -113,17 +117,26 @@ class XdfExporter {
       OrderTexts(outgoing);
       outgoing.samples.AppendTo(outgoing.stream, out_);
       if (outgoing.extent.samples > 1) {
-        xdf::AppendClockOffset(outgoing.stream, outgoing.extent.last_s, out_);
+        xdf::AppendClockOffset(outgoing.stream, outgoing.extent.last_s, 0, out_);
       }
-      xdf::AppendFooter(outgoing.stream, outgoing.extent, out_);
-      exported.streams.push_back({outgoing.stream.name, outgoing.stream.channels.size(),
-                                  outgoing.extent.samples, outgoing.times.mended()});
+      End(outgoing, exported);
+    }
+    for (auto& [topic, foreign] : foreign_) {
+      if (!foreign.info) continue;
+      foreign.out.samples.AppendTo(foreign.out.stream, out_);
+      End(foreign.out, exported);
     }
     if (const Result<void> end = file->Write(out_); !end) return end.error();
     return exported;
   }
 
  private:
+  void End(const Outgoing& outgoing, ExportedXdf& exported) {
+    xdf::AppendFooter(outgoing.stream, outgoing.extent, out_);
+    exported.streams.push_back({outgoing.stream.name, outgoing.stream.channels.size(),
+                                outgoing.extent.samples, outgoing.times.mended()});
+  }
+
   /// Key that the rows of one stream share. A device may get another number, and a number another
   /// role.
   struct Key {
@@ -136,6 +149,7 @@ class XdfExporter {
 
   void Take(std::uint16_t channel, const mcap::Message& record, const pb::Message& message) {
     const TopicTable& topic = tables_.topics().at(channel);
+    if (TakeForeign(topic.topic, record)) return;
     for (const pb::Message* row : topic.table->Rows(message)) {
       Outgoing& to = StreamOf(KeyOf(channel, topic, row), topic, row);
       if (!to.stream.channels.empty()) Add(to, record, message, row, *topic.table);
@@ -207,12 +221,71 @@ class XdfExporter {
     if (to.samples.bytes() >= kChunkBytes) to.samples.AppendTo(to.stream, out_);
   }
 
+  /// A stream of LSL as another program sent it: its own description, times and clock.
+  struct Foreign {
+    std::optional<lsl::Info> info;  ///< Nothing: its description makes no sense.
+    Outgoing out;
+  };
+
+  bool TakeForeign(const std::string& topic, const mcap::Message& record) {
+    constexpr std::string_view kClock = "/clock";
+    const bool is_clock = topic.ends_with(kClock);
+    const std::string of = is_clock ? topic.substr(0, topic.size() - kClock.size()) : topic;
+    const auto description = tables_.lsl().find(of);
+    if (description == tables_.lsl().end()) return false;
+    Foreign& foreign = ForeignOf(of, description->second);
+    if (!foreign.info) return true;
+    const auto size = static_cast<int>(record.data.size());
+    if (v1::LslClock clock; is_clock && clock.ParseFromArray(record.data.data(), size)) {
+      xdf::AppendClockOffset(foreign.out.stream, clock.time_s(), clock.correction_s(), out_);
+    } else if (v1::LslSamples samples;
+               !is_clock && samples.ParseFromArray(record.data.data(), size)) {
+      for (const v1::LslSample& sample : samples.samples()) AddForeign(foreign, sample);
+    }
+    return true;
+  }
+
+  Foreign& ForeignOf(const std::string& topic, const std::string& description) {
+    const auto [at, is_new] = foreign_.try_emplace(topic);
+    Foreign& foreign = at->second;
+    if (!is_new) return foreign;
+    auto info = lsl::ParseInfo(description);
+    if (!info) return foreign;
+    xdf::Stream& stream = foreign.out.stream;
+    stream.id = kFirstForeign + static_cast<std::uint32_t>(foreign_.size());
+    stream.name = info->name;
+    stream.is_text = info->format == lsl::Format::kString;
+    stream.channels.resize(info->channels);
+    // All numbers are doubles in a recording.
+    if (!stream.is_text) info->format = lsl::Format::kDouble64;
+    stream.xml = lsl::FullInfo(*info);
+    foreign.info = std::move(*info);
+    xdf::AppendHeader(stream, out_);
+    return foreign;
+  }
+
+  void AddForeign(Foreign& foreign, const v1::LslSample& sample) {
+    Outgoing& to = foreign.out;
+    const int count = to.stream.is_text ? sample.texts_size() : sample.values_size();
+    if (count != static_cast<int>(foreign.info->channels)) return;
+    if (to.extent.samples++ == 0) to.extent.first_s = sample.time_s();
+    to.extent.last_s = sample.time_s();
+    if (to.stream.is_text) {
+      const std::vector<std::string> texts(sample.texts().begin(), sample.texts().end());
+      to.samples.Add(sample.time_s(), texts);
+    } else {
+      to.samples.Add(sample.time_s(),
+                     std::span<const double>(sample.values().data(), foreign.info->channels));
+    }
+    if (to.samples.bytes() >= kChunkBytes) to.samples.AppendTo(to.stream, out_);
+  }
+
   /// The sample's time in the file, s.
   double Extend(Outgoing& to, std::int64_t time_ns) {
     const double time_s = 1e-9 * static_cast<double>(to.times.Next(time_ns));
     if (to.extent.samples++ == 0) {
       to.extent.first_s = time_s;
-      xdf::AppendClockOffset(to.stream, time_s, out_);
+      xdf::AppendClockOffset(to.stream, time_s, 0, out_);
     }
     to.extent.last_s = time_s;
     return time_s;
@@ -227,6 +300,7 @@ class XdfExporter {
   Tables tables_;
   std::map<Key, Outgoing> streams_;
   std::set<std::string> names_;
+  std::map<std::string, Foreign> foreign_;  ///< By topic.
   std::uint64_t boundary_ns_ = 0;
   std::string out_;
 };
@@ -337,6 +411,10 @@ std::string FileStart() {
 }
 
 void AppendHeader(const Stream& stream, std::string& out) {
+  if (!stream.xml.empty()) {
+    AppendStreamChunk(Tag::kStreamHeader, stream.id, stream.xml, out);
+    return;
+  }
   std::string xml = "<?xml version=\"1.0\"?><info>";
   xml += Element("name", stream.name) + Element("type", stream.type);
   xml += Element("channel_count", std::to_string(stream.channels.size()));
@@ -355,10 +433,10 @@ void AppendHeader(const Stream& stream, std::string& out) {
   AppendStreamChunk(Tag::kStreamHeader, stream.id, xml, out);
 }
 
-void AppendClockOffset(const Stream& stream, double time_s, std::string& out) {
+void AppendClockOffset(const Stream& stream, double time_s, double offset_s, std::string& out) {
   std::string content;
   AppendDouble(time_s, content);
-  AppendDouble(0, content);
+  AppendDouble(offset_s, content);
   AppendStreamChunk(Tag::kClockOffset, stream.id, content, out);
 }
 
@@ -384,11 +462,18 @@ void Samples::Add(double time_s, std::span<const double> numbers) {
 }
 
 void Samples::Add(double time_s, std::string_view text) {
+  const std::string texts[] = {std::string(text)};
+  Add(time_s, texts);
+}
+
+void Samples::Add(double time_s, std::span<const std::string> texts) {
   ++count_;
   content_ += kTimeFollows;
   AppendDouble(time_s, content_);
-  AppendLength(text.size(), content_);
-  content_ += text;
+  for (const std::string& text : texts) {
+    AppendLength(text.size(), content_);
+    content_ += text;
+  }
 }
 
 void Samples::AppendTo(const Stream& stream, std::string& out) {

@@ -55,6 +55,7 @@ struct Stream {
   std::vector<std::string> channels;  ///< Their units stand in their names (UnitOf).
   bool is_text = false;
   std::string note{};  ///< Remark in the stream's header; may be empty.
+  std::string xml{};   ///< The whole header, as another program described its stream; may be empty.
 };
 
 /// Contents of a stream's footer: first and last time, s, and sample count.
@@ -68,9 +69,9 @@ std::string FileStart();
 
 /// Appends the chunk with the stream's header.
 void AppendHeader(const Stream& stream, std::string& out);
-/// Says that the stream's times are those of the file's common clock: an offset of 0. Readers
-/// expect one at the stream's begin and one at its end.
-void AppendClockOffset(const Stream& stream, double time_s, std::string& out);
+/// Says what is to be added to the stream's times, at this one of them, for those of the file's
+/// common clock. Readers expect one at the stream's begin and one at its end.
+void AppendClockOffset(const Stream& stream, double time_s, double offset_s, std::string& out);
 /// Appends the chunk with the stream's footer.
 void AppendFooter(const Stream& stream, const Extent& extent, std::string& out);
 /// A place at which a reader of a damaged file can start again; at least one in ten seconds.
@@ -82,6 +83,7 @@ class Samples {
   /// Times are seconds of the streams' common clock; a row of numbers has one for each channel.
   void Add(double time_s, std::span<const double> numbers);
   void Add(double time_s, std::string_view text);
+  void Add(double time_s, std::span<const std::string> texts);
   std::size_t bytes() const { return content_.size(); }
   /// Appends the chunk and becomes empty. Without samples it appends nothing.
   void AppendTo(const Stream& stream, std::string& out);

@@ -43,6 +43,11 @@ Result<std::vector<transport::Address>> RecordedAddresses(const std::vector<std:
 Result<std::unique_ptr<Recording>> Recording::Create(boost::asio::io_context& io,
                                                      const RecordOptions& options,
                                                      std::function<void()> on_end) {
+  for (const std::string& query : options.lsl) {
+    if (const auto sound = lsl::CheckQuery(query); !sound) {
+      return UsageError("--lsl \"" + query + "\": " + sound.error().message);
+    }
+  }
   recording::WriterSettings settings;
   settings.library = "footing-log " + options.version;
   settings.replace = options.replace;
@@ -73,6 +78,11 @@ Result<void> Recording::Start() {
   }
   for (const transport::Address& address : options_.addresses) Link(address);
   for (const auto& link : links_) link->Start();
+  if (!options_.lsl.empty()) {
+    lsl_ = std::make_unique<lsl::StreamsRecorder>(
+        io_, writer_, options_.lsl, [this](Result<void> written) { Keep(std::move(written)); });
+    if (const auto started = lsl_->Start(); !started) return started;
+  }
   FlushLater();
   ProgressLater();
   return {};
@@ -134,6 +144,9 @@ void Recording::ProgressLater() {
         std::cerr << " (" << recorder.missing_ticks() << " missing)";
       }
     }
+    if (lsl_) {
+      std::cerr << ", LSL " << lsl_->streams() << " streams, " << lsl_->samples() << " samples";
+    }
     std::cerr << std::endl;
     ProgressLater();
   });
@@ -149,6 +162,7 @@ void Recording::CatchUp(std::int64_t until_ns) {
 void Recording::End() {
   if (!on_end_) return;
   for (const auto& link : links_) link->Stop();
+  if (lsl_) lsl_->Stop();
   flush_.cancel();
   progress_.cancel();
   catch_up_.cancel();
@@ -170,6 +184,7 @@ Result<RecordReport> Recording::Finish() {
     waited_for +=
         (waited_for.empty() ? "" : ", ") + recorder.address() + " (" + recorder.link() + ")";
   }
+  if (lsl_) waited_for += (waited_for.empty() ? "" : ", ") + lsl_->Waited();
   if (writer_.statistics().message_count == 0) {
     const std::string why =
         "nothing came to record from " + waited_for + "; " + writer_.path() + " was not written";
@@ -195,6 +210,10 @@ RecordReport Recording::Progress() const {
   for (const auto& link : links_) {
     report.ticks += link->recorder().ticks();
     report.missing_ticks += link->recorder().missing_ticks();
+  }
+  if (lsl_) {
+    report.lsl_streams = lsl_->streams();
+    report.lsl_samples = lsl_->samples();
   }
   const mcap::Statistics& statistics = writer_.statistics();
   report.messages = statistics.message_count;

@@ -8,6 +8,7 @@
 
 #include <boost/asio/io_context.hpp>
 
+#include "clients/log/lsl_in.h"
 #include "common/base/result.h"
 #include "common/net/address.h"
 #include "common/recording/recording_writer.h"
@@ -25,6 +26,7 @@ struct RecordOptions {
   bool from_ring = false;  ///< First what the servers' rings still hold, up to 30 s.
   bool replace = false;
   bool compress = true;                  ///< Chunks, by zstd.
+  std::vector<std::string> lsl;          ///< Queries for streams of LSL that are recorded, too.
   std::vector<std::string> attachments;  ///< Files: config, calibrations, track, survey.
   std::string version;
 };
@@ -38,6 +40,7 @@ struct RecordReport {
   std::uint64_t messages = 0;
   std::uint64_t ticks = 0;
   std::uint64_t missing_ticks = 0;
+  std::uint64_t lsl_streams = 0, lsl_samples = 0;
   double duration_s = 0;  ///< Between the first and the last message.
 };
 
@@ -87,6 +90,7 @@ class Recording {
   recording::RecordingWriter writer_;
   recording::ServerNames names_;
   std::vector<std::unique_ptr<recording::ServerRecorder>> links_;
+  std::unique_ptr<lsl::StreamsRecorder> lsl_;  ///< Null: none is asked for.
   Result<void> written_;
   std::int64_t written_down_ns_ = clock::MonotonicNs();
   timer::Timer flush_;

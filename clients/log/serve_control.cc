@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/log/commands.h"
+#include "clients/log/lsl.h"
 #include "clients/log/record.h"
 #include "common/base/json_text.h"
 #include "common/base/text.h"
@@ -373,6 +374,7 @@ struct ControlOptions {
   std::string listen = "tcp:127.0.0.1:22345";
   std::optional<std::uint16_t> port;
   std::string root = ".";
+  std::vector<std::string> lsl;
   bool insecure_lan = false;
 };
 
@@ -380,10 +382,13 @@ struct ControlOptions {
 class ControlledRecorder {
  public:
   ControlledRecorder(boost::asio::io_context& io, std::vector<transport::Address> addresses,
-                     const std::string& root)
-      : io_(io), addresses_(std::move(addresses)), name_(root), begins_(io), end_(io, [this] {
-          OnSignal();
-        }) {
+                     const std::string& root, std::vector<std::string> lsl)
+      : io_(io),
+        addresses_(std::move(addresses)),
+        lsl_(std::move(lsl)),
+        name_(root),
+        begins_(io),
+        end_(io, [this] { OnSignal(); }) {
     for (const transport::Address& address : addresses_) AddLink(address);
   }
 
@@ -535,6 +540,7 @@ class ControlledRecorder {
     RecordOptions options;
     options.addresses = addresses_;
     options.out = path.string();
+    options.lsl = lsl_;
     options.version = cli::Version();
     auto recording = Recording::Create(io_, options, [this] { OnEnd(); });
     if (!recording) return recording.error();
@@ -631,6 +637,7 @@ class ControlledRecorder {
 
   boost::asio::io_context& io_;
   std::vector<transport::Address> addresses_;
+  std::vector<std::string> lsl_;  ///< Queries.
   RecordingName name_;
   std::vector<std::unique_ptr<Link>> links_;
   std::unique_ptr<transport::Listener> listener_;
@@ -654,7 +661,11 @@ Result<ordered_json> RunServeControl(const ControlOptions& options) {
       options.port ? "tcp:127.0.0.1:" + std::to_string(*options.port) : options.listen);
   if (!listen) return listen.error();
   boost::asio::io_context io(1);
-  ControlledRecorder recorder(io, std::move(*addresses), options.root);
+  for (const std::string& query : options.lsl) {
+    if (const auto sound = lsl::CheckQuery(query); !sound)
+      return UsageError("--lsl \"" + query + "\": " + sound.error().message);
+  }
+  ControlledRecorder recorder(io, std::move(*addresses), options.root, options.lsl);
   const auto listening = recorder.Listen(*listen, options.insecure_lan);
   if (!listening) return listening.error();
   if (options.insecure_lan) {
@@ -690,6 +701,9 @@ void AddServeControlCommand(CLI::App& app, Shared& shared) {
       ->add_option("--root", options->root,
                    "Folder that all recordings stay in, whatever a client asks for")
       ->capture_default_str();
+  command->add_option("--lsl", options->lsl,
+                      "Record the streams of the Lab Streaming Layer that match this query, too; "
+                      "may be repeated");
   command->add_flag("--insecure-lan", options->insecure_lan,
                     "Allow --listen tcp: beyond this host: ANYBODY there may start, stop and mark "
                     "recordings");

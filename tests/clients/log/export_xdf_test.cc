@@ -8,6 +8,10 @@
 #include <string>
 
 #include "clients/log/contents.h"
+#include "clients/log/lsl.h"
+#include "clients/log/lsl_in.h"
+#include "common/recording/recording_writer.h"
+#include "footing/v1/lsl.pb.h"
 #include "footing/v1/session.pb.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
@@ -211,6 +215,54 @@ TEST_F(ExportXdfTest, TheTimesOfTablesRiseStrictlyToo) {
       last_s = time_s;
     }
   }
+}
+
+/// A stream of another program, whose clock is 1000 s ahead of ours.
+void WriteForeignRecording(const std::string& path) {
+  auto writer = recording::RecordingWriter::Create(path, {});
+  ASSERT_TRUE(writer.ok());
+  lsl::Info info;
+  info.name = "BioSemi";
+  info.type = "EEG";
+  info.format = lsl::Format::kFloat32;
+  info.channels = 2;
+  info.nominal_hz = 100;
+  info.uid = "x";
+  info.data_port = info.service_port = 16572;
+  info.description = lsl::Describe({{"Cz", "microvolts"}, {"Oz", "microvolts"}}, "EEG", {});
+  ASSERT_TRUE(writer
+                  ->AddMetadata(lsl::kStreamMetadata,
+                                {{"topic", "/lsl/BioSemi"}, {"info", lsl::FullInfo(info)}})
+                  .ok());
+  v1::LslClock clock;
+  clock.set_time_s(1010);
+  clock.set_correction_s(-1000);
+  ASSERT_TRUE(writer->Write("/lsl/BioSemi/clock", clock, {1, 1, 0}).ok());
+  for (int k = 0; k < 5; ++k) {
+    v1::LslSamples samples;
+    v1::LslSample& sample = *samples.add_samples();
+    sample.set_time_s(1010 + 0.01 * k);
+    sample.add_values(k);
+    if (k < 4) sample.add_values(-k);  // The last one lacks a channel.
+    ASSERT_TRUE(writer->Write("/lsl/BioSemi", samples, {2 + k, 2 + k, 0}).ok());
+  }
+  ASSERT_TRUE(writer->Finish().ok());
+}
+
+TEST_F(ExportXdfTest, AStreamOfAnotherProgramKeepsItsDescriptionAndClock) {
+  WriteForeignRecording(Path("a.mcap"));
+  const auto exported = ExportXdf(Path("a.mcap"), Path("out"), false);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  ASSERT_EQ(xdf_.load_xdf(exported->path), 0);
+  const Xdf::Stream& stream = StreamNamed("BioSemi");
+  EXPECT_EQ(stream.info.type, "EEG");
+  EXPECT_EQ(stream.info.nominal_srate, 100);
+  EXPECT_EQ(ChannelNamed(stream, "Oz"), 1u);
+  ASSERT_EQ(stream.time_series.at(1).size(), 4u);
+  EXPECT_EQ(stream.time_series[1][3], -3);
+  ASSERT_EQ(stream.clock_values.size() + stream.info.clock_offsets.size(), 1u);
+  ASSERT_EQ(stream.time_stamps.size(), 4u);
+  EXPECT_NEAR(stream.time_stamps[3], 10.03, 1e-6);  // libxdf has added the clock's offset.
 }
 
 TEST_F(ExportXdfTest, MarkersAreTheirTextsAndTimesRise) {

@@ -224,6 +224,186 @@ def check_refusals(fields):
                 asks.sendto(garbage, ("127.0.0.1", port))
 
 
+class Foreign:
+    """An outlet of another program, whose clock is AHEAD_S ahead: queries, descriptions, times and one feed."""
+    AHEAD_S = 1000
+
+    def __init__(self, name, kind, channels, form, rate, feed):
+        self.name, self.uid, self.feed = name, f"uid of {name}", feed
+        self.data = socket.create_server(("127.0.0.1", 0))
+        self.queries, self.times = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
+        self.queries.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.queries.bind(("", 16571))
+        self.queries.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
+                                socket.inet_aton("239.255.172.215") + socket.inet_aton("127.0.0.1"))
+        self.times.bind(("127.0.0.1", 0))
+        values = dict(zip(FIELDS, (name, kind, channels, form, f"source of {name}", f"{rate:.12f}", "1.100000000000000",
+                                   "1.0", self.uid, "default", "elsewhere", "", self.data.getsockname()[1],
+                                   self.times.getsockname()[1], "", 0, 0)))
+        self.text = '<?xml version="1.0"?>\n<info>\n' + "".join(
+            f"\t<{k}>{v}</{k}>\n" if v != "" else f"\t<{k} />\n" for k, v in values.items())
+        self.kind, self.ended = kind, threading.Event()
+        self.threads = [threading.Thread(target=run) for run in (self.answer, self.serve)]
+        for thread in self.threads:
+            thread.start()
+
+    def info(self, desc=""):
+        return f"{self.text}\t<desc>{desc}</desc>\n</info>\n".encode()
+
+    def answer(self):
+        while not self.ended.is_set():
+            for ready in select.select([self.queries, self.times], [], [], 0.1)[0]:
+                datagram, sender = ready.recvfrom(65536)
+                lines = datagram.decode().split("\r\n")
+                if ready is self.times:
+                    now = time.monotonic() + self.AHEAD_S
+                    wave, t0 = lines[1].split()
+                    ready.sendto(f" {wave} {t0} {now:.16g} {time.monotonic() + self.AHEAD_S:.16g}".encode(), sender)
+                elif f"'{self.kind}'" in lines[1]:
+                    port, identity = lines[2].split()
+                    self.times.sendto(identity.encode() + b"\r\n" + self.info(), (sender[0], int(port)))
+
+    def serve(self):
+        self.data.settimeout(0.1)
+        while not self.ended.is_set():
+            try:
+                connection, _ = self.data.accept()
+            except TimeoutError:
+                continue
+            with connection:
+                connection.settimeout(5)
+                request = b""
+                while b"\r\n" not in request:
+                    request += connection.recv(4096)
+                if request.startswith(b"LSL:fullinfo"):
+                    connection.sendall(self.info("<channels><channel><label>Cz &amp; Oz</label></channel></channels>"))
+                    continue
+                while not request.endswith(b"\r\n\r\n"):
+                    request += connection.recv(4096)
+                assert request.startswith(f"LSL:streamfeed/110 {self.uid}\r\n".encode()), request
+                connection.sendall((f"LSL/110 200 OK\r\nUID: {self.uid}\r\nByte-Order: 1234\r\nSuppress-Subnormals: 0\r\n"
+                                    "Data-Protocol-Version: 110\r\n\r\n").encode())
+                try:
+                    self.feed(connection, self)
+                except OSError:
+                    pass  # The recorder has closed.
+
+    def end(self):
+        self.ended.set()
+        for thread in self.threads:
+            thread.join()
+        for one in (self.data, self.queries, self.times):
+            one.close()
+
+
+def eeg(connection, outlet):
+    """Three channels of float32 at 100 Hz; every other sample leaves its time to be deduced."""
+    for offset in (4, 2):
+        connection.sendall(struct.pack("<Bd3f", 2, 123456.789, *((k + offset) * (-1) ** k for k in range(3))))
+    outlet.began = time.monotonic() + outlet.AHEAD_S
+    for k in range(10_000):
+        if outlet.ended.wait(max(0, outlet.began + k / 100 - time.monotonic() - outlet.AHEAD_S)):
+            return
+        head = struct.pack("<Bd", 2, outlet.began + k / 100) if k % 2 == 0 else b"\1"
+        connection.sendall(head + struct.pack("<3f", k, -k, k / 2))
+
+
+def words(connection, outlet):
+    for _ in range(2):
+        connection.sendall(struct.pack("<Bd", 2, 123456.789) + b"\1\x0210")
+    connection.sendall(struct.pack("<Bd", 2, time.monotonic() + outlet.AHEAD_S) + b"\4" + struct.pack("<I", 300) + b"w" * 300)
+    outlet.ended.wait(30)
+
+
+def lie(connection, outlet):
+    for _ in range(2):
+        connection.sendall(struct.pack("<Bd", 2, 123456.789) + b"\1\x0210")
+    connection.sendall(b"\1\x08" + b"\xff" * 8)  # A text of 2^64 - 1 bytes.
+    outlet.ended.wait(30)
+
+
+def varlen(data, at):
+    size = data[at]
+    assert size in (1, 4, 8), size
+    return int.from_bytes(data[at + 1:at + 1 + size], "little"), at + 1 + size
+
+
+def read_xdf(path):
+    """Streams of other programs in an XDF file, by name: header, times and values of samples, offsets of the clock."""
+    data, at, streams = path.read_bytes(), 4, {}
+    assert data[:4] == b"XDF:"
+    while at < len(data):
+        length, at = varlen(data, at)
+        tag, content, at = struct.unpack_from("<H", data, at)[0], data[at + 2:at + length], at + length
+        if tag not in (2, 3, 4, 6):
+            continue
+        stream = streams.setdefault(struct.unpack_from("<I", content)[0], {"samples": [], "clock": []})
+        if tag == 2:
+            stream["header"] = xml.fromstring(content[4:])
+        elif tag == 4:
+            stream["clock"].append(struct.unpack_from("<dd", content, 4))
+        elif tag == 6:
+            assert int(xml.fromstring(content[4:]).find("sample_count").text) == len(stream["samples"])
+        else:
+            count, here = varlen(content, 4)
+            channels = int(stream["header"].find("channel_count").text)
+            for _ in range(count):
+                assert content[here] == 8
+                stamp, here = struct.unpack_from("<d", content, here + 1)[0], here + 9
+                if stream["header"].find("channel_format").text == "string":
+                    size, here = varlen(content, here)
+                    stream["samples"].append((stamp, content[here:here + size].decode()))
+                    here += size
+                else:
+                    stream["samples"].append((stamp, struct.unpack_from(f"<{channels}d", content, here)))
+                    here += 8 * channels
+            assert here == len(content)
+    return {stream["header"].find("name").text: stream for number, stream in streams.items() if number > 1_000_000}
+
+
+def check_inlet(stage):
+    """Streams of other programs go into the recording with their clocks, and out again as XDF; liars do no harm."""
+    outlets = [Foreign("Bio/Semi", "EEG", 3, "float32", 100, eeg), Foreign("said", "Words", 1, "string", 0, words),
+               Foreign("liar", "Words", 1, "string", 0, lie), Foreign("giant", "EEG", 10**9, "float32", 100, lie)]
+    recording = stage.folder / "foreign.mcap"
+    try:
+        done = stage.run_json("footing-log", "record", "--connect", stage.sensor, "--out", recording, "--seconds", 1.8,
+                              "--lsl", "type='EEG'", "--lsl", "type='Words'", "--lsl", "name='footingd/motion/left_hand'")
+    finally:
+        for outlet in outlets:
+            outlet.end()
+    assert done["lsl_streams"] == 3 and done["lsl_samples"] > 150, done
+    stage.run_json("footing-log", "export", recording, "--format", "xdf", "--out", stage.folder)
+    streams = read_xdf(stage.folder / "foreign.xdf")
+    assert "liar" not in streams or not streams["liar"]["samples"]
+    brain, said, hand = streams["Bio/Semi"], streams["said"], streams["footingd/motion/left_hand"]
+    assert brain["header"].find("desc/channels/channel/label").text == "Cz & Oz"
+    assert float(brain["header"].find("nominal_srate").text) == 100
+    began = outlets[0].began
+    for k, (stamp, values) in enumerate(brain["samples"]):
+        assert abs(stamp - began - k / 100) < 1e-9 and values == (k, -k, k / 2), (k, stamp - began, values)
+    assert len(brain["samples"]) > 80
+    assert all(abs(offset + Foreign.AHEAD_S) < 1e-3 and at > began - 2 for at, offset in brain["clock"]), brain["clock"]
+    assert len(brain["clock"]) == 1 and [text for _, text in said["samples"]] == ["w" * 300], said["samples"]
+    info = {topic["topic"] for topic in stage.run_json("footing-log", "info", recording)["topics"]}
+    assert {"/lsl/Bio_Semi", "/lsl/Bio_Semi/clock", "/lsl/said", "/footingd/motion"} <= info, info
+    folder = stage.folder / "both"
+    stage.run_json("footing-log", "export", recording, "--format", "csv", "--out", folder)
+    with open(folder / "lsl_Bio_Semi.csv", encoding="utf-8", newline="") as table:
+        ours = [1e-9 * int(row["host_ns"]) - float(row["time_s"]) for row in csv.DictReader(table)]
+    assert len(ours) == len(brain["samples"]) and all(abs(ahead + Foreign.AHEAD_S) < 1e-3 for ahead in ours), ours[:9]
+    # Our own stream, which came by both ways.
+    with open(folder / "footingd_motion.csv", encoding="utf-8", newline="") as table:
+        rows = {int(row["sampled_ns"]) * 1e-9: float(row["specific_force_mps2_x"]) for row in csv.DictReader(table)
+                if row["device_role"] == "left_hand"}
+    assert len(hand["samples"]) > 80 and len(hand["clock"]) >= 1
+    inside = [(stamp, values) for stamp, values in hand["samples"] if min(rows) <= stamp <= max(rows)]
+    wrong = [(stamp, values[0], rows[stamp]) for stamp, values in inside if rows[stamp] != values[0]]
+    assert not wrong and len(inside) > 80, (len(inside), wrong)
+    bad = stage.run("footing-log", "record", "--out", stage.folder / "no.mcap", "--lsl", "desc/x = 1")
+    assert bad.returncode == 2 and "such as: name=" in bad.stderr and not (stage.folder / "no.mcap").exists(), bad
+
+
 def offer(stage, devices):
     """Starts the outlets; the streams once those of these devices, of the characters and of the events are there."""
     stage.start("footing-log", "lsl", "--connect", stage.sensor, "--connect", stage.simulation, name="lsl")
@@ -292,6 +472,7 @@ def main():
         print(f"{len(found)} streams; equal samples {counts}; time correction {1e6 * correction_s:.0f} us; "
               f"lag p50 {1e3 * statistics.median(lags):.2f} ms")
         idle.close()
+        check_inlet(stage)
         assert stage.stop("lsl") == 0
 
 

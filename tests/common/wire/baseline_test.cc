@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "footing/v1/lsl.pb.h"
 #include "footing/v1/model.pb.h"
 #include "footing/v1/session.pb.h"
 
@@ -65,6 +66,7 @@ Lines Current() {
   Lines lines;
   Describe(v1::Envelope::descriptor()->file(), lines);
   Describe(v1::Model::descriptor()->file(), lines);
+  Describe(v1::LslSamples::descriptor()->file(), lines);
   return lines;
 }
 
