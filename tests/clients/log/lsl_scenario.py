@@ -420,6 +420,18 @@ def offer(stage, devices):
 
 
 def start_devices(stage):
+    """Two hands and two boards, which are there within a second: no body has to be moved for them."""
+    stage.start_user("walk")
+    boards = []
+    for side in ("left", "right"):
+        table = stage.folder / f"{side}.csv"
+        table.write_text("time_s,tl_kg,tr_kg,bl_kg,br_kg\n" + "".join(
+            f"{0.02 * i:.2f},{8 + i % 50 / 10},{9 - i % 30 / 10},{7 + i % 20 / 10},{8}\n" for i in range(2000)))
+        boards += [f"--{side}", table]
+    stage.start("footing-stream", "corners", *boards, "--to", stage.devices, name="corners")
+
+
+def start_body(stage):
     stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "wiimote", "--to", stage.devices, "--seed", 1)
 
 
@@ -491,7 +503,7 @@ def measure(seconds):
     """A process of its own reads eight devices, so that this one is not in the way of the times it takes."""
     with Stage(sys.argv[2]) as stage:
         stage.start_servers()
-        start_devices(stage)
+        start_body(stage)
         stage.start("footing-stream", "user", "--interface", "leg", "--see", stage.simulation, "--to", stage.devices,
                     "--seed", 2, name="legs")
         stage.start("footing-stream", "builder", "--to", stage.devices, "--seed", 3, name="builder")

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -13,6 +14,7 @@
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/write.hpp>
 
+#include "clients/log/lsl_out.h"
 #include "clients/log/lsl_outlets.h"
 
 namespace footing::log_client::lsl {
@@ -295,6 +297,52 @@ TEST_F(LslOutletsTest, AReaderThatDoesNotReadIsDroppedAndOthersGetAll) {
   });
   for (std::size_t i = 0; i < kSamples; ++i) ASSERT_EQ(samples[i].time_s, double(i));
   EXPECT_EQ(outlets_->report(stream_).dropped, 1u);
+}
+
+TEST_F(LslOutletsTest, TheCopOfTwoBoardsIsWeightedByTheirLoadsAndInW) {
+  LslStreams streams(*outlets_, {"cop"});
+  streams.Begin("footingd", 100);
+  v1::Tick tick;
+  v1::RigSetup& rig = *tick.mutable_setup()->add_rigs();
+  rig.set_rig("main");
+  rig.mutable_layout()->set_preset("custom");
+  rig.mutable_layout()->mutable_left()->set_y_m(0.3);
+  rig.mutable_layout()->mutable_right()->set_y_m(-0.3);
+  for (const auto& [device, role, load_n, right_m, front_m] :
+       {std::tuple(1u, v1::DEVICE_ROLE_LEFT_BOARD, 300.0, 0.1, 0.05),
+        {2u, v1::DEVICE_ROLE_RIGHT_BOARD, 100.0, 0.0, 0.0}}) {
+    v1::DeviceStatus& status = *tick.mutable_status()->add_devices();
+    status.set_device(device);
+    status.set_rig("main");
+    status.set_role(role);
+    v1::BoardSample& sample = *tick.mutable_boards()->add_samples();
+    sample.set_device(device);
+    sample.set_sampled_ns(2'500'000'000);
+    sample.set_total_n(load_n);
+    sample.set_cop_valid(true);
+    sample.set_cop_x_m(right_m);
+    sample.set_cop_y_m(front_m);
+  }
+  streams.Take(tick, 500'000'000);
+  ASSERT_EQ(outlets_->size(), 2u);
+  stream_ = 1;
+  const Info& info = outlets_->info(stream_);
+  EXPECT_EQ(info.name, "footingd/cop/main");
+  auto reading = Connect(FeedRequest(info));
+  Until([&] { return outlets_->report(stream_).feeds == 1; });
+  streams.Take(tick, 500'000'000);
+  FeedReader feed(info);
+  std::vector<Sample> samples;
+  Until([&] {
+    EXPECT_TRUE(feed.Take(Read(reading), samples).ok());
+    return !samples.empty();
+  });
+  EXPECT_NEAR(samples[0].time_s.value_or(0), 2.0, 1e-12);  // The server's clock is 0.5 s ahead.
+  // In W (x forward, y left): left board (0.05, 0.3 - 0.1) with 300 N, right one (0, -0.3) with
+  // 100.
+  EXPECT_NEAR(samples[0].values.at(0), 400, 1e-9);
+  EXPECT_NEAR(samples[0].values.at(1), 300 * 0.05 / 400, 1e-12);
+  EXPECT_NEAR(samples[0].values.at(2), (300 * 0.2 - 100 * 0.3) / 400, 1e-12);
 }
 
 TEST_F(LslOutletsTest, BadRequestsAreAnsweredAndClosed) {
