@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/text.h"
 #include "common/base/units.h"
 #include "daemon/simulation/biped/track.h"
 
@@ -57,8 +58,11 @@ GroundBox BoxOf(const stream::Track& track, std::size_t index) {
 
 namespace {
 
-std::string Geom(const GroundBox& box, const std::string& name) {
-  const auto text = [](double value) { return std::to_string(value) + " "; };
+/// `exact`: as PlaceBox of world.h places it, to the last bit.
+std::string Geom(const GroundBox& box, const std::string& name, bool exact = false) {
+  const auto text = [exact](double value) {
+    return (exact ? text::Shortest(value) : std::to_string(value)) + " ";
+  };
   const Eigen::Vector3d& p = box.centre_W_m;
   const Eigen::Vector3d& half = box.half_size_m;
   const Eigen::Quaterniond& q = box.q_WS;
@@ -127,21 +131,27 @@ GroundBox WaitingBox(int index) {
 std::string GroundBoxName(int index) { return "ground_" + std::to_string(index); }
 
 GroundText GroundMjcf(const stream::Track& track) {
+  const GroundWindow window = WindowOf(track);
+  if (window.boxes == 0) return WholeGroundMjcf(track);
   GroundText ground;
-  const auto add = [&ground](const GroundBox& box, std::size_t index) {
-    ground.names.push_back(GroundBoxName(static_cast<int>(index)));
-    ground.mjcf += Geom(box, ground.names.back());
-  };
-  if (const GroundWindow window = WindowOf(track); window.boxes > 0) {
-    for (int i = 0; i < window.boxes; ++i) add(WaitingBox(i), static_cast<std::size_t>(i));
-    return ground;
+  for (int i = 0; i < window.boxes; ++i) {
+    ground.names.push_back(GroundBoxName(i));
+    ground.mjcf += Geom(WaitingBox(i), ground.names.back());
   }
+  return ground;
+}
+
+GroundText WholeGroundMjcf(const stream::Track& track) {
   if (HasPlane(track)) {
     return {"<geom name='ground' type='plane' contype='1' conaffinity='2' size='0 0 1'/>\n",
             {"ground"}};
   }
+  GroundText ground;
+  const bool exact = WindowOf(track).boxes > 0;
   for (std::size_t i = 0; i < track.segments.size(); ++i) {
-    if (!track.segments[i].pit) add(BoxOf(track, i), i);
+    if (track.segments[i].pit) continue;
+    ground.names.push_back(GroundBoxName(static_cast<int>(i)));
+    ground.mjcf += Geom(BoxOf(track, i), ground.names.back(), exact);
   }
   return ground;
 }

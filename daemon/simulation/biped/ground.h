@@ -72,6 +72,9 @@ struct GroundText {
 /// (HasPlane), or a box for each segment that is not a pit; the first one begins 3 m before its
 /// start.
 GroundText GroundMjcf(const stream::Track& track);
+/// The same for a world that nobody moves boxes in: those of WindowOf are at their places, too, a
+/// box for each segment.
+GroundText WholeGroundMjcf(const stream::Track& track);
 
 /// Where the ground's height changes at once, across the track.
 struct Edge {

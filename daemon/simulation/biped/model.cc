@@ -87,8 +87,8 @@ std::string Inertial(double below_m, double mass_kg, double x, double y, double 
          "' diaginertia='" + Shortest(x) + " " + Shortest(y) + " " + Shortest(z) + "'/>\n";
 }
 
-std::string Hinge(const char* axis, double armature_kgm2) {
-  return std::string("<joint type='hinge' axis='") + axis + "' armature='" +
+std::string Hinge(const std::string& name, const char* axis, double armature_kgm2) {
+  return "<joint name='" + name + "' type='hinge' axis='" + axis + "' armature='" +
          Shortest(armature_kgm2) + "'/>\n";
 }
 
@@ -97,7 +97,8 @@ std::string Knee(const BipedParameters& p, const std::string& side) {
   return "<body name='" + side + "_knee' pos='0 0 " + Shortest(-knee_below_hip_m) + "'>\n" +
          Inertial(0, p.link_mass_kg, p.link_inertia_across_kgm2, p.link_inertia_across_kgm2,
                   p.link_inertia_along_kgm2) +
-         "<joint type='slide' axis='0 0 -1' limited='true' solreflimit='0.01 1' range='" +
+         "<joint name='" + side +
+         "_leg_length' type='slide' axis='0 0 -1' limited='true' solreflimit='0.01 1' range='" +
          Shortest(p.leg_length_min_m - p.leg_length_m) + " " +
          Shortest(p.leg_length_max_m - p.leg_length_m) + "'/>\n" + "<geom name='" + side +
          "_foot' type='sphere' class='foot' size='" + Shortest(p.foot_radius_m) + "' pos='0 0 " +
@@ -110,8 +111,9 @@ std::string Leg(const BipedParameters& p, int leg) {
          " " + Shortest(-p.hip_below_body_com_m) + "'>\n" +
          Inertial(p.hip_link_com_below_hip_m, p.link_mass_kg, p.link_inertia_across_kgm2,
                   p.link_inertia_across_kgm2, p.link_inertia_along_kgm2) +
-         Hinge("0 0 1", p.hip_armature_kgm2) + Hinge("1 0 0", p.hip_armature_kgm2) +
-         Hinge("0 1 0", p.hip_armature_kgm2) +
+         Hinge(side + "_hip_yaw", "0 0 1", p.hip_armature_kgm2) +
+         Hinge(side + "_hip_roll", "1 0 0", p.hip_armature_kgm2) +
+         Hinge(side + "_hip_pitch", "0 1 0", p.hip_armature_kgm2) +
          "<geom type='capsule' class='shell' size='0.03' fromto='0 0 0 0 0 -0.4'/>\n" +
          Knee(p, side) + "</body>\n";
 }
@@ -137,7 +139,8 @@ std::string FootPairs(const BipedParameters& p, const std::vector<std::string>& 
 }  // namespace
 
 std::string WriteMjcf(const BipedParameters& p, const std::string& ground,
-                      const std::vector<std::string>& ground_names, double step_s) {
+                      const std::vector<std::string>& ground_names, double step_s,
+                      const std::string& more) {
   return "<mujoco>\n<compiler angle='radian' inertiafromgeom='false'/>\n"
          "<option timestep='" +
          Shortest(step_s) + "' integrator='Euler' cone='elliptic' gravity='0 0 " +
@@ -156,7 +159,17 @@ std::string WriteMjcf(const BipedParameters& p, const std::string& ground,
                   p.body_inertia_yaw_kgm2) +
          "<geom type='capsule' class='shell' size='0.1' fromto='-0.15 0 0 0.15 0 0'/>\n" +
          Leg(p, kLeft) + Leg(p, kRight) + "</body>\n</worldbody>\n" + FootPairs(p, ground_names) +
-         "</mujoco>\n";
+         more + "</mujoco>\n";
+}
+
+std::string MotorsMjcf() {
+  std::string motors = "<actuator>\n";
+  for (const std::string side : {"left", "right"}) {
+    for (const char* joint : {"_hip_yaw", "_hip_roll", "_hip_pitch", "_leg_length"}) {
+      motors += "<motor name='" + side + joint + "' joint='" + side + joint + "'/>\n";
+    }
+  }
+  return motors + "</actuator>\n";
 }
 
 physics::WorldNames Names(const std::vector<std::string>& ground) {

@@ -43,8 +43,14 @@ Result<BipedParameters> ParseBiped(const std::string& text, const std::string& o
 /// The whole world as MJCF text: options, `ground` (geoms of the world body), the biped.
 /// Contact: the feet's friction holds whatever ground they touch; solref 6 ms, critically damped.
 /// The feet and the geoms of `ground_names` are also listed as pairs (Clearance in world.h).
+/// `more`: further sections at the end.
 std::string WriteMjcf(const BipedParameters& parameters, const std::string& ground,
-                      const std::vector<std::string>& ground_names, double step_s);
+                      const std::vector<std::string>& ground_names, double step_s,
+                      const std::string& more = "");
+
+/// A section for WriteMjcf: a motor for each joint, of gear 1, in the order and the units of
+/// physics::JointEfforts. The engine itself has none: it applies its efforts to the joints.
+std::string MotorsMjcf();
 
 /// The names WriteMjcf gives, and those of the ground's boxes that may be moved.
 physics::WorldNames Names(const std::vector<std::string>& ground = {});

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include <mujoco/mujoco.h>
+
+#include "common/base/text.h"
 #include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/biped/model.h"
 #include "daemon/simulation/biped/track.h"
@@ -61,6 +64,27 @@ Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& 
   parts->BeginOnTrack();
   parts->state.trial = trial::Begin(parts->on.track, trial::DrawTask(parts->on.track, 0));
   return GaitEngine(std::move(parts));
+}
+
+Result<std::string> ExportMjcf(const EngineTexts& texts, const EngineConfig& config,
+                               const std::string& writer) {
+  const Result<GaitEngine> engine = GaitEngine::Create(texts, config);
+  if (!engine) return engine.error();
+  const Result<biped::BipedParameters> biped = biped::ParseBiped(texts.biped, kBipedFile);
+  if (!biped) return biped.error();
+  std::string start = "<keyframe>\n<key name='start' qpos='";
+  for (const double value : engine->Save().world.qpos) start += text::Shortest(value) + " ";
+  start.back() = '\'';
+  start += "/>\n</keyframe>\n";
+  const terrain::GroundText ground = terrain::WholeGroundMjcf(engine->track());
+  return "<!-- The biped of the gait engine on its track. Written by " + writer + " for MuJoCo " +
+         mj_versionString() +
+         ".\n     Start: mj_resetDataKeyframe(model, data, 0), then mj_forward(model, data).\n"
+         "     Each step: the efforts of the eight joints in ctrl, N m and N; a push on the body "
+         "in\n"
+         "     xfrc_applied of \"body\", N; then mj_step(model, data). -->\n" +
+         biped::WriteMjcf(*biped, ground.mjcf, ground.names, config.step_s,
+                          biped::MotorsMjcf() + start);
 }
 
 void GaitEngine::Advance(const EngineInputs& inputs) {

@@ -169,6 +169,17 @@ struct EngineOutput {
 struct EngineState;
 struct TrackWorld;
 
+/// The engine's world as one MJCF file for MuJoCo alone: the biped, all segments of the track, a
+/// motor for each joint, and the state in which the engine starts as key frame 0 ("start").
+///
+/// From mj_resetDataKeyframe and mj_forward on, mj_step leads to the bits of EngineOutput's
+/// state_hash, with the same version of MuJoCo on the same machine: joint_efforts in ctrl and
+/// push_W_n in xfrc_applied of the body "body". The comment at the file's head says so. Where the
+/// engine moves its ground (terrain::WindowOf) it agrees until a foot stands on two boxes whose
+/// order differs. `writer` is named in that comment, such as "Footing 1.0.0".
+Result<std::string> ExportMjcf(const EngineTexts& texts, const EngineConfig& config,
+                               const std::string& writer);
+
 /// Physics, gait controllers, user interface, trials, and what happens at a failure.
 ///
 /// One thread at a time. After Create nothing allocates, locks or logs.

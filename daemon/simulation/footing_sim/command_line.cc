@@ -1,9 +1,15 @@
 #include "daemon/simulation/footing_sim/command_line.h"
 
+#include <filesystem>
+#include <iostream>
+
+#include "common/cli/cli.h"
 #include "common/net/address.h"
 #include "common/net/metrics_endpoint.h"
 #include "common/runtime/config.h"
+#include "common/runtime/files.h"
 #include "common/runtime/log.h"
+#include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/pose_service/pose_line.h"
 
@@ -55,11 +61,12 @@ cli::ServerProgram Program() {
   return {
       "footing-sim",
       "Simulation server: drives a biped from a person's motion, or reconstructs the body of a "
-      "person on boards.",
+      "person on boards. \"footing-sim export mjcf\" writes the biped and its track for MuJoCo.",
       "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n"
       "  footing-sim --interface leg --set turn_by=trunk\n"
       "  footing-sim --gaits paper\n"
-      "  footing-sim --engine pose --lag-ms 100\n",
+      "  footing-sim --engine pose --lag-ms 100\n"
+      "  footing-sim export mjcf --track hills --out hills.xml\n",
       {{"--engine", "engine", "Engine: gait or pose (default: gait)"},
        {"--sensor", "sensor", "Address of footingd"},
        {"--interface", "interface",
@@ -130,6 +137,47 @@ Result<cli::RunningServer> StartService(boost::asio::io_context& io, const cli::
                               config = Reloaded(config, *wanted, *changed_files, log::Info);
                               return {};
                             }};
+}
+
+namespace {
+
+Result<void> ExportMjcf(const std::string& track, const std::string& out, bool replace) {
+  if (!out.empty() && !replace && std::filesystem::exists(out)) {
+    return UsageError(out + " exists; name another file, or give --replace");
+  }
+  const auto texts = engine_files::ReadTexts({.track = track});
+  if (!texts) return texts.error();
+  const auto mjcf = engine::ExportMjcf(*texts, {}, std::string("footing-sim ") + cli::Version());
+  if (!mjcf) return mjcf.error();
+  if (out.empty()) {
+    std::cout << *mjcf << std::flush;
+    return std::cout ? Result<void>() : Failure("cannot write to standard output");
+  }
+  const auto written = config::ReplaceFile(out, *mjcf);
+  return written ? written : Failure("cannot write " + out + ": " + written.error().message);
+}
+
+}  // namespace
+
+std::optional<int> RunExport(int argc, char** argv) {
+  if (argc < 2 || std::string(argv[1]) != "export") return std::nullopt;
+  std::string track = gait_service::Config().track, out;
+  bool replace = false;
+  const auto app = cli::NewApp("footing-sim export", "Writes the simulation's model to a file.",
+                               "  footing-sim export mjcf --track hills --out hills.xml\n"
+                               "  footing-sim export mjcf > endless.xml");
+  app->require_subcommand(1);
+  CLI::App* mjcf = app->add_subcommand(
+      "mjcf",
+      "The biped of the gait engine with its track, its motors and its start, MJCF of MuJoCo. The "
+      "body of the pose engine has no such model: it is reconstructed, not simulated.");
+  mjcf->add_option("--track", track, "Track: a built-in name, or a JSON file")
+      ->capture_default_str();
+  mjcf->add_option("--out", out, "File to write (default: standard output)");
+  mjcf->add_flag("--replace", replace, "Overwrite an existing file");
+  if (const auto code = cli::Parse(*app, argc - 1, argv + 1)) return code;
+  const auto done = ExportMjcf(track, out, replace);
+  return done ? 0 : cli::Report(done.error());
 }
 
 Result<void> CheckService(const Config& config) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ Result<Config> ReadConfig(const cli::ServerLine& line);
 /// of `line` again.
 Result<cli::RunningServer> StartService(boost::asio::io_context& io, const cli::ServerLine& line,
                                         const Config& config, const std::string& version);
+
+/// `footing-sim export mjcf`, which writes the gait engine's world for MuJoCo and starts no server:
+/// its exit code. None where the command line is another one.
+std::optional<int> RunExport(int argc, char** argv);
 
 /// Checks of StartService besides the config itself: reads all files and builds the engine, and
 /// opens no socket.

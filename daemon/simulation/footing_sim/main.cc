@@ -6,6 +6,7 @@
 
 int main(int argc, char** argv) {
   using namespace footing;  // NOLINT: main is wiring
+  if (const auto code = footing_sim::RunExport(argc, argv)) return *code;
   cli::ServerLine line;
   if (const auto code = cli::ParseServerLine(footing_sim::Program(), argc, argv, line))
     return *code;

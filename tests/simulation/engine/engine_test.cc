@@ -1,6 +1,13 @@
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
+#include <mujoco/mujoco.h>
+
+#include "common/base/text.h"
 #include "daemon/simulation/biped/track.h"
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/engine/state.h"
@@ -50,6 +57,60 @@ TEST(Engine, ReplayedForcesLeadBareStepsToTheSameHash) {
       bare.StepBare(output.joint_efforts, output.push_W_n);
     });
     EXPECT_EQ(bare.StateHash(), engine.Output().state_hash) << Name(gait);
+  }
+}
+
+/// The hash as a user of MuJoCo computes it: FNV-1a over the words of the state, each as its bytes.
+std::uint64_t HashOf(const mjModel& model, const mjData& data) {
+  std::uint64_t hash = text::kFnvBasis;
+  const auto add = [&hash](const mjtNum* words, int count) {
+    for (int i = 0; i < count; ++i) {
+      hash = text::AddFnv(hash, std::bit_cast<std::uint64_t>(words[i]));
+    }
+  };
+  add(data.qpos, model.nq);
+  add(data.qvel, model.nv);
+  add(data.qacc_warmstart, model.nv);
+  return hash;
+}
+
+/// MuJoCo alone, from the file: under the engine's efforts it walks as the engine does, falls
+/// included. How many of the engine's steps, 0 to `steps`, had the same hash before one differed.
+int StepsAsTheEngine(const std::string& track, int steps) {
+  EngineTexts texts = Texts();
+  texts.track = test::DataFile("tracks/" + track + ".json");
+  const auto mjcf = ExportMjcf(texts, {}, "a test");
+  EXPECT_TRUE(mjcf.ok());
+  const std::string path = testing::TempDir() + "footing_" + track + ".xml";
+  std::ofstream(path) << *mjcf;
+  char reason[1000] = "";
+  const physics::ModelPointer model(mj_loadXML(path.c_str(), nullptr, reason, sizeof reason));
+  std::filesystem::remove(path);
+  EXPECT_NE(model, nullptr) << reason;
+  if (!model) return -1;
+  const physics::StatePointer data(mj_makeData(model.get()));
+  mj_resetDataKeyframe(model.get(), data.get(), 0);
+  mj_forward(model.get(), data.get());
+  const int body = mj_name2id(model.get(), mjOBJ_BODY, "body");
+
+  GaitEngine engine = std::move(GaitEngine::Create(texts)).value();
+  EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
+  for (int i = 0; i < steps; ++i) {
+    if (i == 1500) Push(inputs, 2, 4);
+    if (i == 3000) inputs.direct_command = Command(Gait::kRun, 2);
+    engine.Advance(inputs);
+    const EngineOutput& output = engine.Output();
+    std::copy(output.joint_efforts.begin(), output.joint_efforts.end(), data->ctrl);
+    std::copy(output.push_W_n.data(), output.push_W_n.data() + 3, data->xfrc_applied + 6 * body);
+    mj_step(model.get(), data.get());
+    if (HashOf(*model, *data) != output.state_hash) return i;
+  }
+  return steps;
+}
+
+TEST(ExportedWorld, IsSteppedByMuJoCoAloneToTheEnginesHashes) {
+  for (const char* track : {"endless", "straight", "hills", "1", "pits"}) {
+    EXPECT_EQ(StepsAsTheEngine(track, 6000), 6000) << track;
   }
 }
 

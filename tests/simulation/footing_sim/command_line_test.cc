@@ -40,6 +40,24 @@ TEST(FootingSimConfig, AFileMayHoldTheSettingsOfBothEngines) {
   EXPECT_TRUE(Check(config));
 }
 
+TEST(FootingSimExport, WritesAModelOnceAndLeavesOtherCommandLinesAlone) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("hills.xml");
+  const auto run = [](std::vector<std::string> words) {
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    return RunExport(static_cast<int>(argv.size()), argv.data());
+  };
+  EXPECT_EQ(run({"footing-sim", "--track", "hills"}), std::nullopt);
+  EXPECT_EQ(run({"footing-sim", "export", "mjcf", "--track", "hills", "--out", path}), 0);
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(text, HasSubstr("<motor name='left_hip_yaw'"));
+  EXPECT_THAT(text, HasSubstr("<key name='start'"));
+  EXPECT_EQ(run({"footing-sim", "export", "mjcf", "--out", path}), 2);
+  EXPECT_EQ(run({"footing-sim", "export", "mjcf", "--track", "nowhere"}), 2);
+}
+
 TEST(FootingSimConfig, AnAddressThatIsNoneIsRefusedBeforeAnythingListens) {
   Config config;
   EXPECT_TRUE(Check(config));
