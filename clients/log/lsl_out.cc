@@ -494,8 +494,7 @@ void AddLslCommand(CLI::App& app, Shared& shared) {
   command->footer(
       "Examples:\n"
       "  footing-log lsl                              # all streams, to programs of this host\n"
-      "  footing-log lsl --streams boards,cop,events  # a board and markers alone\n"
-      "  footing-log lsl --interface 192.168.1.5 --insecure-lan   # to a laboratory's network");
+      "  footing-log lsl --streams boards,cop,events  # a board and markers alone");
   command->callback([=, &shared] { Finish(RunLsl(*options, *connect, *kinds), shared); });
 }
 

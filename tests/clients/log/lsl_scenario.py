@@ -195,7 +195,12 @@ def rows_of(stage, recording, table):
 
 def same_samples(name, samples, rows, time_column, names):
     """Every sample within the recording's time is a row of it, bit for bit, and the other way round."""
-    times = [int(row[time_column]) * 1e-9 for row in rows]
+    times_ns = [int(row[time_column]) for row in rows]
+    for i in range(1, len(times_ns)):
+        # LSL passes on a time that repeats; the export puts it 1 us later.
+        if time_column == "sampled_ns" and times_ns[i] - int(rows[i - 1][time_column]) == 1000:
+            times_ns[i] = times_ns[i - 1]
+    times = [time_ns * 1e-9 for time_ns in times_ns]
     first, last = max(samples[0][1], times[0]), min(samples[-1][1], times[-1])
     ours = {t: row for t, row in zip(times, rows) if first <= t <= last}
     theirs = {stamp: values for _, stamp, values in samples if first <= stamp <= last}
