@@ -228,6 +228,7 @@ class XdfExporter {
   };
 
   bool TakeForeign(const std::string& topic, const mcap::Message& record) {
+    if (tables_.lsl().empty()) return false;
     constexpr std::string_view kClock = "/clock";
     const bool is_clock = topic.ends_with(kClock);
     const std::string of = is_clock ? topic.substr(0, topic.size() - kClock.size()) : topic;
@@ -374,27 +375,6 @@ void AppendStreamChunk(Tag tag, std::uint32_t id, std::string_view content, std:
   AppendChunk(tag, whole, out);
 }
 
-/// <name>text</name>, with what XML does not allow in a text replaced.
-std::string Element(const std::string& name, std::string_view text) {
-  std::string xml = "<" + name + ">";
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        xml += "&amp;";
-        break;
-      case '<':
-        xml += "&lt;";
-        break;
-      case '>':
-        xml += "&gt;";
-        break;
-      default:
-        xml += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return xml + "</" + name + ">";
-}
-
 std::string Seconds(double time_s) {
   char text[40];
   std::snprintf(text, sizeof text, "%.9f", time_s);
@@ -406,7 +386,7 @@ std::string Seconds(double time_s) {
 std::string FileStart() {
   std::string out = "XDF:";
   AppendChunk(Tag::kFileHeader,
-              "<?xml version=\"1.0\"?><info>" + Element("version", "1.0") + "</info>", out);
+              "<?xml version=\"1.0\"?><info>" + lsl::Element("version", "1.0") + "</info>", out);
   return out;
 }
 
@@ -416,20 +396,16 @@ void AppendHeader(const Stream& stream, std::string& out) {
     return;
   }
   std::string xml = "<?xml version=\"1.0\"?><info>";
-  xml += Element("name", stream.name) + Element("type", stream.type);
-  xml += Element("channel_count", std::to_string(stream.channels.size()));
-  xml += Element("nominal_srate", "0");  // Every sample has its time.
-  xml += Element("channel_format", stream.is_text ? "string" : "double64");
-  xml += Element("source_id", stream.source_id);
-  xml += "<desc>";
-  if (!stream.note.empty()) xml += Element("note", stream.note);
-  xml += "<channels>";
-  for (const std::string& channel : stream.channels) {
-    const std::string unit = UnitOf(channel);
-    xml += "<channel>" + Element("label", channel) + (unit.empty() ? "" : Element("unit", unit)) +
-           Element("type", stream.type) + "</channel>";
-  }
-  xml += "</channels></desc></info>";
+  xml += lsl::Element("name", stream.name) + lsl::Element("type", stream.type);
+  xml += lsl::Element("channel_count", std::to_string(stream.channels.size()));
+  xml += lsl::Element("nominal_srate", "0");  // Every sample has its time.
+  xml += lsl::Element("channel_format", stream.is_text ? "string" : "double64");
+  xml += lsl::Element("source_id", stream.source_id);
+  std::vector<lsl::Channel> channels;
+  for (const std::string& channel : stream.channels) channels.push_back({channel, UnitOf(channel)});
+  std::vector<std::pair<std::string, std::string>> notes;
+  if (!stream.note.empty()) notes.emplace_back("note", stream.note);
+  xml += "<desc>" + lsl::Describe(channels, stream.type, notes) + "</desc></info>";
   AppendStreamChunk(Tag::kStreamHeader, stream.id, xml, out);
 }
 
@@ -442,9 +418,9 @@ void AppendClockOffset(const Stream& stream, double time_s, double offset_s, std
 
 void AppendFooter(const Stream& stream, const Extent& extent, std::string& out) {
   const std::string xml = "<?xml version=\"1.0\"?><info>" +
-                          Element("first_timestamp", Seconds(extent.first_s)) +
-                          Element("last_timestamp", Seconds(extent.last_s)) +
-                          Element("sample_count", std::to_string(extent.samples)) +
+                          lsl::Element("first_timestamp", Seconds(extent.first_s)) +
+                          lsl::Element("last_timestamp", Seconds(extent.last_s)) +
+                          lsl::Element("sample_count", std::to_string(extent.samples)) +
                           "<clock_offsets></clock_offsets></info>";
   AppendStreamChunk(Tag::kStreamFooter, stream.id, xml, out);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -23,14 +22,6 @@ std::string Digits(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.16g", value);
   return text;
-}
-
-template <typename T>
-std::optional<T> WholeOf(std::string_view text) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value)
-                                                                  : std::nullopt;
 }
 
 /// Takes a line off the front, without its end; nothing when there is no end.
@@ -194,8 +185,8 @@ Result<Info> ParseInfo(std::string_view xml) {
   const auto channels = text::ToCount(field("channel_count"));
   const auto nominal_hz = text::ToNumber(field("nominal_srate"));
   const auto version = text::ToNumber(field("version"));
-  const auto data_port = WholeOf<std::uint16_t>(field("v4data_port"));
-  const auto service_port = WholeOf<std::uint16_t>(field("v4service_port"));
+  const auto data_port = text::As<std::uint16_t>(field("v4data_port"));
+  const auto service_port = text::As<std::uint16_t>(field("v4service_port"));
   if (info.name.empty()) return WrongInfo("has no name");
   if (info.uid.empty()) return WrongInfo(info.name + " has no uid");
   if (format == std::end(kFormats)) return WrongInfo(info.name + " has an unknown channel_format");
@@ -431,7 +422,7 @@ std::optional<ShortInfoRequest> ParseShortInfoRequest(std::string_view datagram)
   const auto query = PopLine(datagram);
   if (!query) return std::nullopt;
   std::string_view last = text::Trim(datagram.substr(0, datagram.find('\n')));
-  const auto port = WholeOf<std::uint16_t>(text::PopWord(last));
+  const auto port = text::As<std::uint16_t>(text::PopWord(last));
   const std::string_view id = text::PopWord(last);
   if (!port || *port == 0 || id.empty() || id.size() > 64) return std::nullopt;
   return ShortInfoRequest{std::string(*query), *port, std::string(id)};
@@ -449,7 +440,7 @@ std::string ShortInfoAnswer(const std::string& query_id, const Info& info) {
 std::optional<TimeExchange> ParseTimeRequest(std::string_view datagram) {
   if (PopLine(datagram) != "LSL:timedata") return std::nullopt;
   std::string_view words = text::Trim(datagram.substr(0, datagram.find('\n')));
-  const auto wave = WholeOf<std::int32_t>(text::PopWord(words));
+  const auto wave = text::As<std::int32_t>(text::PopWord(words));
   const auto t0 = text::ToNumber(text::PopWord(words));
   if (!wave || !t0) return std::nullopt;
   return TimeExchange{*wave, *t0};
@@ -462,7 +453,7 @@ std::string EncodeTimeRequest(const TimeExchange& exchange) {
 std::optional<TimeExchange> ParseTimeAnswer(std::string_view datagram) {
   const auto words = text::SplitAtBlanks(datagram);
   if (words.size() != 4) return std::nullopt;
-  const auto wave = WholeOf<std::int32_t>(words[0]);
+  const auto wave = text::As<std::int32_t>(words[0]);
   const auto t0 = text::ToNumber(words[1]), t1 = text::ToNumber(words[2]),
              t2 = text::ToNumber(words[3]);
   if (!wave || !t0 || !t1 || !t2) return std::nullopt;
@@ -501,7 +492,7 @@ Request ParseRequest(std::string_view bytes, const Info& info) {
     return Refused("400 Bad request: there are LSL:shortinfo, LSL:fullinfo and LSL:streamfeed/110");
   }
   std::string_view words = line->substr(15);
-  const auto version = WholeOf<int>(text::PopWord(words));
+  const auto version = text::As<int>(text::PopWord(words));
   const std::string_view uid = text::PopWord(words);
   if (!version) return Refused("400 Bad request: no version behind LSL:streamfeed/");
   if (*version < 110 || *version >= 200)
@@ -516,7 +507,7 @@ Request ParseRequest(std::string_view bytes, const Info& info) {
     if (colon == std::string_view::npos) continue;
     const std::string name = text::Lower(std::string(text::Trim(header->substr(0, colon))));
     std::string_view rest_of_line = header->substr(colon + 1);
-    const auto number = WholeOf<int>(text::Trim(rest_of_line.substr(0, rest_of_line.find(';'))));
+    const auto number = text::As<int>(text::Trim(rest_of_line.substr(0, rest_of_line.find(';'))));
     if (name == "value-size" && info.format != Format::kString &&
         number != static_cast<int>(BytesOf(info.format)))
       return Refused("415 Value-Size must be " + std::to_string(BytesOf(info.format)));

@@ -86,9 +86,9 @@ void OscEncoder::Take(const v1::Skeletons& skeletons) {
   for (const v1::Skeleton& one : skeletons.skeletons()) skeletons_[one.character()] = one;
   body_.reset();
   biped_.reset();
-  if (skeletons.skeletons_size() > 0) {
-    biped_ = BipedPerson::Of(skeletons.skeletons(0), kBipedLegM);
-  }
+  if (skeletons_.empty()) return;
+  biped_ = BipedPerson::Of(skeletons.skeletons(0), kBipedLegM);
+  links_ = biped_ ? biped_->Skeleton() : skeletons_.begin()->second;
 }
 
 std::vector<std::string> OscEncoder::Encode(const v1::CharacterFrame& frame) {
@@ -99,16 +99,18 @@ std::vector<std::string> OscEncoder::EncodeVmc(const v1::CharacterFrame& frame) 
   if (frame.characters_size() == 0 || skeletons_.empty()) return {};
   const v1::CharacterFrame person = biped_ ? biped_->Frame(frame) : frame;
   const v1::Character& character = person.characters(0);
-  const v1::Skeleton links = biped_ ? biped_->Skeleton() : skeletons_.begin()->second;
   if (!character.body().calibrated()) {
     const bool begun = character.body().calibration_progress() > 0;
     return Bundles({VmcState(begun ? kCalibrating : kWaiting), VmcTime(frame.time_s())});
   }
-  if (character.links_size() != links.links_size()) return {};
+  if (character.links_size() != links_.links_size()) return {};
   if (!body_) {
-    auto skeleton = SkeletonOf(links, character);
+    auto skeleton = SkeletonOf(links_, character);
     if (!skeleton) return {};
+    auto bones = motion::HumanBones(*skeleton);
+    if (!bones) return {};
     body_ = std::move(skeleton).value();
+    bones_ = std::move(bones).value();
   }
   motion::Motion pose{*body_, 1, 0, Eigen::VectorXd::Zero(body_->dof)};
   SetPose(*body_, character, pose.q.col(0));
@@ -119,14 +121,13 @@ std::vector<std::string> OscEncoder::EncodeVmc(const v1::CharacterFrame& frame) 
   std::vector<std::string> messages = {
       VmcState(kCalibrated),
       Pose("/VMC/Ext/Root/Pos", "root", Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity())};
-  const std::vector<std::string> bones = motion::HumanBones(*body_).value();
   for (int i = 0; i < body_->size(); ++i) {
     const auto own = static_cast<std::size_t>(i);
-    if (bones[own].empty()) continue;
+    if (bones_[own].empty()) continue;
     Eigen::Vector3d p = at.p_WJ[own];
     Eigen::Matrix3d R = at.R_WJ[own];
     int parent = body_->joint(i).parent;
-    while (parent >= 0 && bones[static_cast<std::size_t>(parent)].empty()) {
+    while (parent >= 0 && bones_[static_cast<std::size_t>(parent)].empty()) {
       parent = body_->joint(parent).parent;
     }
     if (parent >= 0) {
@@ -134,7 +135,7 @@ std::vector<std::string> OscEncoder::EncodeVmc(const v1::CharacterFrame& frame) 
       p = R_PW * (p - at.p_WJ[static_cast<std::size_t>(parent)]);
       R = R_PW * R;
     }
-    messages.push_back(Pose("/VMC/Ext/Bone/Pos", bones[own], ToUnity(p),
+    messages.push_back(Pose("/VMC/Ext/Bone/Pos", bones_[own], ToUnity(p),
                             ToUnity(Eigen::Quaterniond(R).normalized())));
   }
   messages.push_back(VmcTime(frame.time_s()));

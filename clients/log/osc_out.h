@@ -46,7 +46,10 @@ class OscEncoder {
   OscFormat format_;
   std::map<std::uint32_t, v1::Skeleton> skeletons_;  ///< By character.
   std::optional<BipedPerson> biped_;
-  std::optional<body::Skeleton> body_;  ///< VMC's character, once a frame showed its lengths.
+  // VMC's character: its links, and once a frame showed its lengths, its joints and their bones.
+  v1::Skeleton links_;
+  std::optional<body::Skeleton> body_;
+  std::vector<std::string> bones_;
 };
 
 /// Options of a sender.

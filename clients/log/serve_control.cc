@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -79,14 +78,6 @@ std::string WithoutEmptyParts(std::string text, const std::map<std::string, std:
   return text;
 }
 
-template <typename Number>
-std::optional<Number> NumberIn(const std::string& text) {
-  Number number{};
-  const char* const end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && at == end ? std::optional(number) : std::nullopt;
-}
-
 }  // namespace
 
 RecordingName::RecordingName(const fs::path& root) : outermost_(Resolved(root)) {
@@ -110,7 +101,7 @@ Result<void> RecordingName::SetOne(const std::string& option, const std::string&
     // LabRecorder's clients on Windows write backslashes.
     fields.name_template = Replaced(value, "\\", "/");
   } else if (option == "run") {
-    const auto run = NumberIn<int>(value);
+    const auto run = text::As<int>(value);
     if (!run || *run < 0 || *run > kMostRuns)
       return UsageError("run " + value + " is not a number from 0 to " + std::to_string(kMostRuns));
     fields.run = *run;
@@ -211,11 +202,11 @@ Result<MarkerLine> ParseMarker(std::string_view line) {
     if (open == std::string_view::npos) break;
     const std::string option(line.substr(open + 1, line.size() - open - 2));
     if (option.starts_with("value:")) {
-      marker.value = NumberIn<double>(option.substr(6));
+      marker.value = text::As<double>(option.substr(6));
       if (!marker.value || !std::isfinite(*marker.value))
         return UsageError("{" + option + "}: the value is not a number");
     } else if (option.starts_with("time_ns:")) {
-      marker.time_ns = NumberIn<std::int64_t>(option.substr(8));
+      marker.time_ns = text::As<std::int64_t>(option.substr(8));
       if (!marker.time_ns)
         return UsageError("{" + option + "}: the time is not a whole number of nanoseconds");
     } else {

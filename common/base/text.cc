@@ -129,12 +129,7 @@ std::optional<double> ToNumber(std::string_view word) {
   return value;
 }
 
-std::optional<std::size_t> ToCount(std::string_view word) {
-  std::size_t value = 0;
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (end != word.data() + word.size() || word.empty() || code != std::errc()) return std::nullopt;
-  return value;
-}
+std::optional<std::size_t> ToCount(std::string_view word) { return As<std::size_t>(word); }
 
 void AppendFixed(std::string& text, double value, int decimals) {
   std::array<char, 400> digits;

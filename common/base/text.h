@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -73,6 +74,16 @@ std::string Joined(const Texts& texts, std::string_view separator = ", ") {
 }
 
 // Numbers from and to text, the same under every locale.
+
+/// A number of this type that is the whole of `word`, as std::from_chars reads it, or nothing. A
+/// real one may be infinite or NaN.
+template <typename Number>
+std::optional<Number> As(std::string_view word) {
+  Number number{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool whole = error == std::errc() && end == word.data() + word.size();
+  return whole ? std::optional(number) : std::nullopt;
+}
 
 /// A finite number that is the whole of `word`, or nothing.
 std::optional<double> ToNumber(std::string_view word);

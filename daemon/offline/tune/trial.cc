@@ -55,15 +55,16 @@ constexpr double kPaperKickNs = 4;
 constexpr double kPaperChangeTrialS = 9;  // Leaving a run takes up to four seconds.
 constexpr Range kPaperChangesS{0.2, 1.7};
 
-/// Speeds that the paper's gaits are tuned for.
-Range PaperMps(Gait gait) {
+/// Speeds from the slowest to the fastest that the acceptance tests have; `paper`: that the paper's
+/// gaits are tuned for.
+Range TestedMps(Gait gait, bool paper) {
   switch (gait) {
     case Gait::kWalk:
-      return {0.2, 1.4};
+      return paper ? Range{0.2, 1.4} : Range{0.25, 1.75};
     case Gait::kRun:
-      return {1.5, 4};
+      return paper ? Range{1.5, 4} : Range{2, 6};
     case Gait::kJump:
-      return {0, 1};
+      return paper ? Range{0, 1} : Range{0, 2};
     case Gait::kStep:
     case Gait::kUnspecified:
       return {0, 0};
@@ -91,7 +92,7 @@ Disturbance DrawPaper(const Task& task, noise::Random& random) {
   const auto choice =
       static_cast<std::size_t>(random.Uniform() * static_cast<double>(gaits.size()));
   drawn.change.gait = gaits[std::min(choice, gaits.size() - 1)];
-  drawn.change.speed_mps = drawn_of(PaperMps(drawn.change.gait));
+  drawn.change.speed_mps = drawn_of(TestedMps(drawn.change.gait, true));
   drawn.change.height_m = drawn_of(kHeightsM);
   drawn.change_s = drawn_of(kPaperChangesS);
   drawn.trial_s = kPaperChangeTrialS;
@@ -99,22 +100,6 @@ Disturbance DrawPaper(const Task& task, noise::Random& random) {
 }
 
 double TestedKickNs(Gait gait) { return gait == Gait::kRun ? 26 : 16; }
-
-/// Speeds from the slowest to the fastest that the acceptance tests have.
-Range TestedMps(Gait gait) {
-  switch (gait) {
-    case Gait::kWalk:
-      return {0.25, 1.75};
-    case Gait::kRun:
-      return {2, 6};
-    case Gait::kJump:
-      return {0, 2};
-    case Gait::kStep:
-    case Gait::kUnspecified:
-      return {0, 0};
-  }
-  return {0, 0};
-}
 
 /// Widths of pits that the gait is to cross, m; none: 0.
 Range PitWidths(const Task& task) {
@@ -177,7 +162,7 @@ Result<void> CheckSpeeds(Gait gait, const std::vector<double>& speeds_mps) {
 
 std::vector<Task> TasksOf(Gait gait, const std::vector<double>& speeds_mps, std::size_t set,
                           bool paper) {
-  const Range tested = paper ? PaperMps(gait) : TestedMps(gait);
+  const Range tested = TestedMps(gait, paper);
   const double own_mps = speeds_mps[set];
   std::vector<Task> tasks{{gait, own_mps, paper}};
   if (set == 0 && tested.min < own_mps) tasks.push_back({gait, tested.min, paper});
@@ -186,7 +171,7 @@ std::vector<Task> TasksOf(Gait gait, const std::vector<double>& speeds_mps, std:
   }
   for (const Gait from : stream::kGaits) {
     if (!paper || from == gait || !gait::IsDirect(from, gait)) continue;
-    const Range range = PaperMps(from);
+    const Range range = TestedMps(from, true);
     tasks.push_back({from, (range.min + range.max) / 2, paper, gait});
   }
   return tasks;

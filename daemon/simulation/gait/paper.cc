@@ -159,10 +159,7 @@ Targets AdvancePaperWalking(const Context& context, GaitMemory& memory) {
   if (next != memory.walking) EnterPaper(next, context, memory);
   // "By extending the support leg during Fall."
   if (memory.walking == WalkingPhase::kFall && IsHopping(context.goal.gait)) {
-    StartThrust(context, memory);
-    memory.hop.thrust_length_m = std::min(
-        context.body.legs[memory.support_leg].length_m + context.gains.paper.thrust_extension_m,
-        context.biped.leg_length_max_m - 0.02);
+    StartThrust(context, context.gains.paper.thrust_extension_m, memory);
     KeepIdle(context, memory);
     BeginExtension(memory.hop);
     return {};

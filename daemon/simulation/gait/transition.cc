@@ -344,22 +344,20 @@ bool BeginThrust(const Context& context, GaitMemory& memory) {
       swing <= gains.thrust_from_swing) {
     return false;
   }
-  StartThrust(context, memory);
-  return true;
-}
-
-void StartThrust(const Context& context, GaitMemory& memory) {
-  const TransitionGains& gains = context.gains.transition;
   const bool jump = context.goal.gait == Gait::kJump;
   const double lift_off_mps = jump ? gains.thrust_to_jump_mps : gains.thrust_to_run_mps;
   const double energy_j = context.biped.mass_kg() * lift_off_mps * lift_off_mps / 2 + kThrustLossJ;
-  const double extension_m =
-      std::sqrt(2 * energy_j / context.gains.hopping.run_leg_stiffness_n_per_m);
+  StartThrust(context, std::sqrt(2 * energy_j / context.gains.hopping.run_leg_stiffness_n_per_m),
+              memory);
+  return true;
+}
+
+void StartThrust(const Context& context, double extension_m, GaitMemory& memory) {
   memory.hop.thrust_length_m =
       std::clamp(context.body.legs[memory.support_leg].length_m + extension_m, 0.9,
                  context.biped.leg_length_max_m - 0.02);
   memory.transition.thrusting = true;
-  memory.transition.preparing_jump = jump;
+  memory.transition.preparing_jump = context.goal.gait == Gait::kJump;
   memory.transition.absorbing = false;
   memory.running = RunningPhase::kExtension;
   memory.phase_start_s = context.body.time_s;

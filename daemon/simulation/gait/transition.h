@@ -85,8 +85,8 @@ void SlewSpeed(const Context& context, GaitMemory& memory);
 /// In Fall, late enough, with a goal that flies or faster than walking can be: begins the thrust.
 /// After a push such a walk goes on as a run, which brakes and lands into walking again.
 bool BeginThrust(const Context& context, GaitMemory& memory);
-/// Begins it whatever the phase.
-void StartThrust(const Context& context, GaitMemory& memory);
+/// Begins it whatever the phase: the supporting leg extends by so much.
+void StartThrust(const Context& context, double extension_m, GaitMemory& memory);
 /// At lift-off: to the flight of the gait that follows.
 void LiftOff(const Context& context, GaitMemory& memory);
 /// Asked in flight: whether running's next step prepares a jump.
