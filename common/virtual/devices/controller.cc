@@ -380,8 +380,8 @@ namespace {
 
 Memory MakeProMemory() {
   Memory memory(true);
-  constexpr std::uint8_t kIdentity[] = {0x00, 0x00, 0xa4, 0x20, 0x01, 0x20};
-  std::copy(std::begin(kIdentity), std::end(kIdentity), memory.extension().begin() + 0xfa);
+  constexpr std::uint8_t kPro[] = {0x00, 0x00, 0xa4, 0x20, 0x01, 0x20};
+  std::copy(std::begin(kPro), std::end(kPro), memory.extension().begin() + 0xfa);
   return memory;
 }
 
@@ -457,8 +457,8 @@ Memory MakeMemory(const std::array<BalanceBoard::Points, BalanceBoard::kCorners>
   for (std::size_t i = 0; i < 4; ++i) {
     page[0x3c + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
   }
-  constexpr std::uint8_t kIdentity[] = {0x00, 0x00, 0xa4, 0x20, 0x04, 0x02};
-  std::copy(std::begin(kIdentity), std::end(kIdentity), page.begin() + 0xfa);
+  constexpr std::uint8_t kBoard[] = {0x00, 0x00, 0xa4, 0x20, 0x04, 0x02};
+  std::copy(std::begin(kBoard), std::end(kBoard), page.begin() + 0xfa);
   return memory;
 }
 
