@@ -1,7 +1,7 @@
 """Two made boards and hands to a reconstructed body: calibrated, finite, near what the stand-in's
 body really does; boards lost and back; the next subject without a stale T-pose.
 
-Usage: pose_line.py BINARY_FOLDER
+Usage: pose_line.py BINARY_FOLDER NODE_FOLDER
 
 The model is the product's where there is one, else a small one is trained from motion capture of
 other people (FOOTING_TEST_DATA); without either the scenario is skipped.
@@ -16,6 +16,7 @@ import time
 
 import decode_stream
 import harness
+import outside_readers
 
 SKIPPED = 77
 # Generous: other people's prior, 1 cm of noise on the hands, and every latency counts as an error.
@@ -169,7 +170,7 @@ def check_next_subject(stage, watcher):
     assert taken["subject"] == "p08" and abs(taken["mass_kg"] - 75) < 1, taken
 
 
-def check_recording(stage):
+def check_recording(stage, node):
     """Both people stand in the recording, each with a movement of their own."""
     assert stage.stop("footing-log") == 0
     out = stage.folder / "motions"
@@ -181,13 +182,17 @@ def check_recording(stage):
     for motion in exported["files"]:
         text = pathlib.Path(motion["path"]).read_text()
         assert text.startswith("HIERARCHY") and "nan" not in text, motion
+    try:
+        outside_readers.check_bodies(stage, stage.folder / "line.mcap", node, with_forces=True)
+    except outside_readers.NoNode as error:
+        print(f"not checked by readers of others: {error}")
 
 
-def main(binaries):
-    return with_t_pose(lambda: run(binaries))
+def main(binaries, node):
+    return with_t_pose(lambda: run(binaries, node))
 
 
-def run(binaries):
+def run(binaries, node):
     with harness.Stage(binaries) as stage:
         folder = models(stage)
         if folder is None:
@@ -209,11 +214,11 @@ def run(binaries):
         check_lost_and_back(stage, watcher)
         check_next_subject(stage, watcher)
         time.sleep(1)  # A second of the next person's movement.
-        check_recording(stage)
+        check_recording(stage, node)
         for name in ("footing-stream", "footing-sim", "footingd"):
             assert stage.stop(name) == 0, name
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(*sys.argv[1:]))

@@ -1,55 +1,33 @@
 """Lets the reference implementation of MCAP, npm's @mcap/core, read a recording of ours.
 
-Usage: mcap_core_test.py WRITE_SAMPLE_RECORDING READER_FOLDER WORK_FOLDER
+Usage: mcap_core_test.py WRITE_SAMPLE_RECORDING SCENARIOS_FOLDER WORK_FOLDER
 Ends with 77 (skipped) where node or npm is missing or the package cannot be installed.
 """
-import json
 import pathlib
-import shutil
 import subprocess
 import sys
+
+sys.path.insert(0, sys.argv[2])
+import outside_readers  # noqa: E402
 
 EXPECTED = {"/footingd/motion": 300, "/footingd/status": 6, "/footingd/gaps": 1}
 
 
-def skip(why):
-    print(f"skipped: {why}")
-    sys.exit(77)
-
-
-def install(reader, work):
-    work.mkdir(parents=True, exist_ok=True)
-    lock = work / "package-lock.json"
-    is_same = lock.is_file() and lock.read_bytes() == (reader / lock.name).read_bytes()
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(reader / name, work / name)
-    if is_same and (work / "node_modules" / ".package-lock.json").is_file():  # npm writes it when all is in place.
-        return
+def main(writer, work):
     try:
-        done = subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=work, check=False,
-                              capture_output=True, text=True, timeout=120)
-    except subprocess.TimeoutExpired:
-        skip("npm ci did not end within 120 s")
-    if done.returncode != 0:
-        skip(f"npm ci failed: {done.stderr.strip()[-300:]}")
-
-
-def main(writer, reader, work):
-    if shutil.which("node") is None or shutil.which("npm") is None:
-        skip("node or npm is not installed")
-    install(reader, work)
-    recordings = work / "sample.mcap", work / "compressed.mcap"
+        folder = outside_readers.node_folder(work)
+    except outside_readers.NoNode as error:
+        print(f"skipped: {error}")
+        return 77
+    recordings = folder / "sample.mcap", folder / "compressed.mcap"
     subprocess.run([writer, recordings[0]], check=True)
     subprocess.run([writer, recordings[1], "zstd"], check=True)
     for recording in recordings:
-        check(recording, reader, work)
+        check(outside_readers.run_node(folder, "read_mcap.mjs", recording))
+    return 0
 
 
-def check(recording, reader, work):
-    done = subprocess.run(["node", reader / "read.mjs", recording], cwd=work, check=False,
-                          capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stderr
-    seen = json.loads(done.stdout)
+def check(seen):
     assert seen["indexed"]["counts"] == EXPECTED, seen
     assert seen["stream"] == {"counts": EXPECTED, "done": True}, seen
     assert seen["indexed"]["statistics"] == sum(EXPECTED.values()), seen
@@ -60,4 +38,4 @@ def check(recording, reader, work):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
+    sys.exit(main(sys.argv[1], pathlib.Path(sys.argv[3])))

@@ -1,6 +1,6 @@
 """Records both servers live: ended by SIGINT the file is complete; killed it lacks a second at most.
 
-Usage: record_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
+Usage: record_scenario.py SCENARIOS_FOLDER BINARY_FOLDER NODE_FOLDER
 """
 import select
 import signal
@@ -11,6 +11,7 @@ import threading
 import time
 
 sys.path.insert(0, sys.argv[1])
+import outside_readers  # noqa: E402
 from harness import Stage  # noqa: E402
 
 
@@ -89,6 +90,16 @@ def check_osc(stage):
                 assert all(abs(sum(v * v for v in bone[3:]) - 1) < 1e-5 for bone in bones.values()), bones
 
 
+def check_outside_readers(stage, recording, node):
+    """The biped in every format of bodies, and as an avatar's packets."""
+    try:
+        outside_readers.check_bodies(stage, recording, node, with_forces=False)
+        outside_readers.check_osc(stage, node, lambda to: stage.run_json(
+            "footing-log", "osc", "--connect", stage.simulation, "--to", to, "--rate-hz", 50, "--seconds", 2)["frames"])
+    except outside_readers.NoNode as error:
+        print(f"not checked by readers of others: {error}")
+
+
 def main():
     with Stage(sys.argv[2]) as stage:
         stage.start_servers()
@@ -127,6 +138,7 @@ def main():
             check_missing(stage, info)
 
         check_osc(stage)
+        check_outside_readers(stage, whole, sys.argv[3])
 
         # Start-up of the process and connecting are within the first 0.5 s.
         assert kept_s > killed_after_s - 1.5, (kept_s, killed_after_s)

@@ -1,11 +1,8 @@
 // Reads a recording with @mcap/core, through its index and as a stream, and prints what both found.
-// Usage: node read.mjs FILE. @mcap/core is looked for in the current folder's node_modules.
-import {createRequire} from "node:module";
+// Usage: node read_mcap.mjs FILE. Runs from a copy beside node_modules.
 import {open, readFile} from "node:fs/promises";
-
-const require = createRequire(process.cwd() + "/");
-const {McapIndexedReader, McapStreamReader} = require("@mcap/core");
-const {decompress} = require("fzstd");
+import {McapIndexedReader, McapStreamReader} from "@mcap/core";
+import {decompress} from "fzstd";
 
 const decompressHandlers = {zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size)))};
 
