@@ -26,18 +26,18 @@ Ability AbilityWith(UserInterface interface, TurnSource turn_by) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:  // A cycle and a half at 2.5 Hz, and the change of the hands.
       ability.turn_delay_s = 0.35;
-      ability.run_jump_s = 1.45;
-      ability.walk_jump_s = 1.7;
+      ability.run_jump_s = 1.65;
+      ability.walk_jump_s = 1.3;
       break;
     case UserInterface::kArm:
       ability.turn_delay_s = 0.5;
-      ability.run_jump_s = 1.7;
-      ability.walk_jump_s = 2.05;
+      ability.run_jump_s = 1.76;
+      ability.walk_jump_s = 1.45;
       break;
     case UserInterface::kLeg:  // Feet show their heights in a whole cycle of either.
       ability.turn_delay_s = turn_by == TurnSource::kFeet ? 0.7 : 0.35;
-      ability.run_jump_s = 1.6;
-      ability.walk_jump_s = 1.8;
+      ability.run_jump_s = 1.72;
+      ability.walk_jump_s = 1.45;
       break;
     case UserInterface::kJoystick:
       ability.turn_delay_s = 0.1;
@@ -277,7 +277,9 @@ bool Driver::ChooseJump(const Observation& now) {
   if (jump_until_m_ >= 0 && (now.gait == Gait::kJump || edge_m > kSamePitM)) return false;
   const double lead_s = std::max(0.0, timing_.LeadS(now.gait) - ability_.turn_delay_s);
   const double middle_m = edge_m + length_m / 2;
-  if (middle_m >= lead_s * std::max(0.5, now.speed_mps)) return false;
+  // A run-up gets faster on the way to the pit, and who wants that reckons with it.
+  const double gain_mps = std::max(0.0, intention_.speed_mps - now.speed_mps);
+  if (middle_m >= lead_s * std::max(0.5, now.speed_mps + gain_mps / 2)) return false;
   jump_until_m_ = here_m + edge_m + length_m;
   timing_.Begin(now_s_, now.gait, now.speed_mps, here_m + middle_m);
   return true;

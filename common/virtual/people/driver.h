@@ -24,7 +24,8 @@ struct Ability {
   bool jumps_at_once = false;    ///< One gesture is one jump; else it lasts as long as the jump.
   double turn_delay_s = 0.02;    ///< From the user's motion to a changed command.
   /// From the user's motion to the top of the character's first leap, out of a run and out of a
-  /// walk: means of the jumps of straight tracks. The user corrects it by what it sees.
+  /// walk, as practice with pits teaches (docs/evaluation/tracks.md). The user corrects it by what
+  /// it sees.
   double run_jump_s = 0.8;
   double walk_jump_s = 0.85;
 };
