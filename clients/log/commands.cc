@@ -16,6 +16,7 @@
 #include "clients/log/contents.h"
 #include "clients/log/export_bodies.h"
 #include "clients/log/export_xdf.h"
+#include "clients/log/foxglove.h"
 #include "clients/log/osc_out.h"
 #include "clients/log/record.h"
 #include "common/base/json_text.h"
@@ -142,6 +143,21 @@ Result<ordered_json> RunXdf(const std::string& file, const std::string& folder, 
   return out;
 }
 
+Result<ordered_json> RunFoxglove(const std::string& file, const std::string& folder, bool replace) {
+  const auto exported =
+      ExportFoxglove(file, folder, std::string("footing-log ") + cli::Version(), replace);
+  if (!exported) return exported.error();
+  ordered_json out{{"file", file},
+                   {"format", "foxglove"},
+                   {"files", {{{"path", exported->path}}}},
+                   {"topics", ordered_json::array()}};
+  for (const FoxgloveTopic& topic : exported->topics) {
+    out["topics"].push_back(
+        {{"topic", topic.topic}, {"schema", topic.schema}, {"messages", topic.messages}});
+  }
+  return out;
+}
+
 Result<ordered_json> RunBids(const std::string& file, const std::string& folder,
                              const BidsOptions& options) {
   const auto exported = ExportBids(file, folder, options);
@@ -175,9 +191,10 @@ Result<ordered_json> RunExport(const std::string& file, const std::string& forma
                      skeleton == "humanoid" ? BvhSkeleton::kHumanoid : BvhSkeleton::kCmu);
   }
   if (format == "xdf") return RunXdf(file, folder, replace);
+  if (format == "foxglove") return RunFoxglove(file, folder, replace);
   if (format != "csv") {
     return UsageError("unknown --format " + format +
-                      "; there are: csv, xdf, bids, bvh, trc, mot, c3d, gltf");
+                      "; there are: csv, xdf, bids, foxglove, bvh, trc, mot, c3d, gltf");
   }
   const auto files = ExportCsv(file, folder, replace, tidy);
   if (!files) return files.error();
@@ -249,10 +266,13 @@ void AddRecordCommand(CLI::App& app, Shared& shared) {
                    "Of the file's chunks: zstd or none, for readers that do not know it (default "
                    "zstd)")
       ->check(CLI::IsMember({"zstd", "none"}));
+  command->add_flag("--foxglove", options->foxglove,
+                    "Add topics that Foxglove and Lichtblick draw in 3-D without a plug-in");
   command->add_flag("--force", options->replace, "Overwrite an existing file");
   command->footer(
       "Examples:\n"
       "  footing-log record --out a.mcap --seconds 60\n"
+      "  footing-log record --out a.mcap --foxglove\n"
       "  footing-log record --out a.mcap --lsl \"type='EEG'\" --lsl \"name='PsychoPy'\"");
   command->callback([options, addresses, compression, &shared] {
     options->compress = *compression == "zstd";
@@ -275,6 +295,7 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
       ->add_option(
           "--format", *format,
           "Output format: csv, xdf (Lab Streaming Layer), bids (a subject's task in a data set), "
+          "foxglove (the recording with topics that Foxglove and Lichtblick draw in 3-D), "
           "or of reconstructed bodies and the biped bvh "
           "(rotations), trc (joint centres), "
           "mot (joint angles and forces under the feet, external loads and a model, for OpenSim), "
@@ -283,7 +304,8 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
       ->required();
   command
       ->add_option("--out", *folder,
-                   "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: "
+                   "Output folder; one file (xdf, foxglove), or one per topic (csv) or subject "
+                   "(others; mot: "
                    "two; beside them the stated errors of the angles); with bids the data set, "
                    "created if it does not exist")
       ->required();

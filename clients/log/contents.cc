@@ -15,6 +15,7 @@
 #include <google/protobuf/message.h>
 #include <nlohmann/json.hpp>
 
+#include "clients/log/foxglove.h"
 #include "clients/log/lsl_in.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
@@ -466,6 +467,7 @@ Result<void> Tables::Learn() {
   };
   visitor.message = [this](const mcap::Message& record) {
     TopicTable& topic = topics_[record.channel_id];
+    if (topic.topic.starts_with(kFoxgloveTopics)) return;
     if (record.log_time_ns < topic.newest_ns) {
       topic.steps_back[topic.messages] = record.log_time_ns;
     }
@@ -489,6 +491,7 @@ Result<void> Tables::Walk(const Visit& visit) {
   visitor.message = [&](const mcap::Message& record) {
     if (!first_failure_) return;
     TopicTable& topic = topics_[record.channel_id];
+    if (topic.topic.starts_with(kFoxgloveTopics)) return;
     const auto& later = topic.steps_back;
     std::vector<Held>& held = held_[record.channel_id];
     const bool waits =

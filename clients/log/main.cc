@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
       "  footing-log export a.mcap --format csv --out a/\n"
       "  footing-log export a.mcap --format csv --tidy --out tidy/\n"
       "  footing-log export a.mcap --format xdf --out a/\n"
+      "  footing-log export a.mcap --format foxglove --out a/\n"
       "  footing-log export a.mcap --format bids --out data/ --subject 02\n"
       "  footing-log export a.mcap --format bvh --skeleton humanoid --out a/\n"
       "  footing-log repair cut.mcap --out whole.mcap\n"

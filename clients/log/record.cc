@@ -8,6 +8,7 @@
 
 #include <boost/asio/post.hpp>
 
+#include "clients/log/lsl.h"
 #include "common/runtime/files.h"
 #include "common/runtime/service_manager.h"
 
@@ -65,6 +66,9 @@ Recording::Recording(boost::asio::io_context& io, recording::RecordingWriter wri
       options_(options),
       on_end_(std::move(on_end)),
       writer_(std::move(writer)),
+      foxglove_([this](const auto& topic, const auto& message, const auto& stamp) {
+        return writer_.Write(topic, message, stamp);
+      }),
       flush_(io),
       progress_(io),
       catch_up_(io) {}
@@ -110,6 +114,12 @@ void Recording::Link(const transport::Address& address) {
   server.on_notice = [](const recording::StreamRecorder& recorder) {
     std::cerr << recorder.address() << ": notice: " << recorder.notice() << std::endl;
   };
+  if (options_.foxglove) {
+    server.on_tick = [this](const std::string& name, const v1::Tick& tick, std::int64_t now_ns) {
+      return foxglove_.OnTick(
+          name, tick, {tick.host_ns(), now_ns, static_cast<std::uint32_t>(tick.sequence())});
+    };
+  }
   links_.push_back(
       std::make_unique<recording::ServerRecorder>(io_, writer_, names_, std::move(server)));
 }

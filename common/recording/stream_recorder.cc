@@ -172,7 +172,10 @@ transport::ClientHandlers ServerRecorder::Handlers() {
     options_.on_written(recorder_.OnWelcome(welcome, clock::MonotonicNs()));
   };
   handlers.on_tick = [this](const v1::Tick& tick) {
-    options_.on_written(recorder_.OnTick(tick, clock::MonotonicNs()));
+    const std::int64_t now_ns = clock::MonotonicNs();
+    options_.on_written(recorder_.OnTick(tick, now_ns));
+    if (!options_.on_tick || recorder_.server().empty()) return;
+    options_.on_written(options_.on_tick(recorder_.server(), tick, now_ns));
   };
   handlers.on_gap = [this](const v1::Gap& gap) {
     options_.on_written(recorder_.OnGap(gap, clock::MonotonicNs()));

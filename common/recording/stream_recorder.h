@@ -45,6 +45,8 @@ class StreamRecorder {
   /// The last state of the link, for a person.
   const std::string& link() const { return link_; }
   const std::string& address() const { return address_; }
+  /// Name of its topics; empty before its welcome.
+  const std::string& server() const { return server_; }
   /// A server has answered there: it took this client in, or refused it.
   bool reached() const { return reached_; }
 
@@ -88,6 +90,9 @@ struct ServerRecorderOptions {
   std::function<void(const StreamRecorder&)> on_link;
   /// Called when the server said what slows it; may be empty.
   std::function<void(const StreamRecorder&)> on_notice = {};
+  /// Called with each tick once it is written, and the time at which it came; may be empty.
+  std::function<Result<void>(const std::string& server, const v1::Tick& tick, std::int64_t now_ns)>
+      on_tick = {};
 };
 
 /// A connection with the role log, all of whose messages go to a recording. It is reliable: when
