@@ -1,6 +1,7 @@
 #include "clients/log/commands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <boost/asio/io_context.hpp>
 #include <nlohmann/json.hpp>
 
+#include "clients/log/align.h"
 #include "clients/log/contents.h"
 #include "clients/log/export_bodies.h"
 #include "clients/log/export_xdf.h"
@@ -325,6 +327,127 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   command->callback([=, &shared] {
     Finish(RunExport(*file, *format, WithoutEndSlashes(*folder), *of_bids, *skeleton, *tidy),
            shared);
+  });
+}
+
+namespace {
+
+ordered_json Maybe(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json();
+}
+
+ordered_json ToJson(const AlignOptions& options, const Alignment& alignment) {
+  const TimeOffset none;
+  const TimeOffset& at = alignment.offset ? *alignment.offset : none;
+  const bool known = alignment.method == "marker" || alignment.method == "lsl";
+  ordered_json out{{"file", options.file}, {"with", options.with}, {"method", alignment.method}};
+  out["sure"] = at.sure;
+  out["offset_s"] = alignment.offset ? ordered_json(at.offset_s) : ordered_json();
+  out["sd_s"] = alignment.offset ? ordered_json(at.sd_s) : ordered_json();
+  out["doubt"] = alignment.offset ? at.doubt
+                                  : "there is no second in which both forces change: the files do "
+                                    "not overlap, or nobody moved";
+  out["note"] = alignment.note;
+  if (alignment.offset && !known) {
+    out["correlation"] = at.correlation;
+    out["overlap_s"] = at.overlap_s;
+    out["gain"] = at.gain;
+    out["misfit_n"] = at.misfit_n;
+    out["play_n"] = at.play_n;
+    out["evidence"] = at.evidence;
+    out["runner_up_s"] = Maybe(at.runner_up_s);
+    out["runner_up_evidence"] = at.runner_up_evidence;
+  }
+  if (alignment.files.empty()) return out;
+  out["files"] = alignment.files;
+  out["frames"] = alignment.frames;
+  out["unmeasured_frames"] = alignment.unmeasured_frames;
+  out["placement_rms_m"] = Maybe(alignment.placement_rms_m);
+  out["missing"] = {"shear forces", "free moments"};
+  return out;
+}
+
+void PrintText(const AlignOptions& options, const Alignment& alignment) {
+  if (!alignment.note.empty()) std::cout << "note: " << alignment.note << "\n";
+  if (!alignment.offset) {
+    std::cout << "not sure: there is no second in which both forces change: the files do not "
+                 "overlap, or nobody moved\n";
+    return;
+  }
+  const TimeOffset& at = *alignment.offset;
+  std::cout << "time in " << options.file << " = time in " << options.with
+            << (at.offset_s < 0 ? " - " : " + ") << text::Fixed(std::abs(at.offset_s), 4)
+            << " s, standard deviation " << text::Fixed(1e3 * at.sd_s, 1) << " ms\n"
+            << (at.sure ? "sure" : "not sure: " + at.doubt) << "\n";
+  if (alignment.files.empty()) return;
+  for (const std::string& file : alignment.files) std::cout << "wrote " << file << "\n";
+  std::cout << alignment.frames << " frames, " << alignment.unmeasured_frames
+            << " of them without a board; shear forces and free moments are missing; "
+            << (alignment.placement_rms_m
+                    ? "the feet are within " + text::Fixed(100 * *alignment.placement_rms_m, 1) +
+                          " cm of where the boards were pressed"
+                    : "the places are in the boards' own frame")
+            << "\n";
+}
+
+void RunAlign(const AlignOptions& options, Shared& shared) {
+  if (options.at_s && options.marker.empty()) {
+    return Finish(UsageError("--at needs --marker"), shared);
+  }
+  const auto alignment = Align(options);
+  if (!alignment) return Finish(alignment.error(), shared);
+  if (shared.json) {
+    std::cout << text::ToText(ToJson(options, *alignment)) << std::endl;
+  } else {
+    PrintText(options, *alignment);
+    std::cout.flush();
+  }
+  if (alignment->offset && alignment->offset->sure) return;
+  shared.exit_code = static_cast<int>(ErrorKind::kFailure);
+}
+
+}  // namespace
+
+void AddAlignCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand(
+      "align", "Find the offset between a recording and a file of another motion-capture system");
+  const auto options = std::make_shared<AlignOptions>();
+  const auto clock = std::make_shared<std::string>("force");
+  command->add_option("FILE", options->file, "Recording with boards, MCAP file")->required();
+  command
+      ->add_option("--with", options->with,
+                   "File of the other system: .c3d (plates or markers), .trc, .mot, .sto, or .csv "
+                   "with the columns time_s,force_n")
+      ->required();
+  command->add_option("--rig", options->rig, "Rig of the boards (default: the first one)");
+  command
+      ->add_option("--clock", *clock,
+                   "force (compare vertical forces; default) or lsl (the file's times are LSL's "
+                   "clock on the host of footingd)")
+      ->check(CLI::IsMember({"force", "lsl"}));
+  command->add_option("--marker", options->marker,
+                      "Align by this marker of the recording, and by --at or a C3D event of that "
+                      "label");
+  command->add_option("--at", options->at_s, "Time of the marker in the file, s");
+  command
+      ->add_option_function<double>(
+          "--max-sd-ms", [options](double ms) { options->most_sd_s = ms / 1e3; },
+          "Greatest standard deviation of a sure offset, ms (default 5)")
+      ->check(CLI::Range(0.1, 100.0));
+  command->add_option("--out", options->out,
+                      "Folder for the boards' ground forces on the file's clock, if it is sure: "
+                      "NAME_grf.mot and NAME_loads.xml, for OpenSim");
+  command->add_flag("--force", options->replace, "Overwrite existing files");
+  command->footer(
+      "Examples:\n"
+      "  footing-log align a.mcap --with squats.c3d\n"
+      "  footing-log align a.mcap --with opencap.trc --out opensim/\n"
+      "  footing-log align a.mcap --with video.trc --marker clap --at 3.42\n"
+      "Exit code 1 if the offset is not sure.");
+  command->callback([options, clock, &shared] {
+    options->lsl_clock = *clock == "lsl";
+    if (!options->out.empty()) options->out = WithoutEndSlashes(options->out);
+    RunAlign(*options, shared);
   });
 }
 

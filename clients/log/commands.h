@@ -26,6 +26,7 @@ void AddRecordCommand(CLI::App& app, Shared& shared);
 void AddInfoCommand(CLI::App& app, Shared& shared);
 void AddExportCommand(CLI::App& app, Shared& shared);
 void AddRepairCommand(CLI::App& app, Shared& shared);
+void AddAlignCommand(CLI::App& app, Shared& shared);
 void AddRecalibrateCommand(CLI::App& app, Shared& shared);
 void AddServeCommand(CLI::App& app, Shared& shared);
 void AddOscCommand(CLI::App& app, Shared& shared);

@@ -55,6 +55,35 @@ motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector
   return tracks;
 }
 
+std::string WithNote(std::string table, const std::string& note) {
+  const std::size_t end = table.find("endheader\n");
+  FOOTING_CHECK(end != std::string::npos);
+  return table.insert(end, note + "\n");
+}
+
+/// Says to OpenSim's tools which columns of the forces act on which foot, at which point.
+std::string ExternalLoads(const std::string& name) {
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n"
+      "<ExternalLoads name=\"" +
+      name + "_loads\">\n<objects>\n";
+  for (const bool left : {false, true}) {
+    const std::string side = left ? "l" : "r";
+    xml += "<ExternalForce name=\"foot_" + side +
+           "\">\n<appliesForce>true</appliesForce>\n<applied_to_body>" +
+           joint_angles::OpenSimFoot(left) +
+           "</applied_to_body>\n<force_expressed_in_body>ground</force_expressed_in_body>\n"
+           "<point_expressed_in_body>ground</point_expressed_in_body>\n<force_identifier>"
+           "ground_force_" +
+           side + "_v</force_identifier>\n<point_identifier>ground_force_" + side +
+           "_p</point_identifier>\n<torque_identifier>ground_torque_" + side +
+           "_</torque_identifier>\n<data_source_name>Unassigned</data_source_name>\n"
+           "</ExternalForce>\n";
+  }
+  return xml + "</objects>\n<groups />\n<datafile>" + name +
+         "_grf.mot</datafile>\n</ExternalLoads>\n</OpenSimDocument>\n";
+}
+
 namespace {
 
 struct NamedText {
@@ -107,36 +136,6 @@ motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool
     }
   }
   return table;
-}
-
-/// A table of OpenSim with a line for people in its header, which readers pass over.
-std::string WithNote(std::string table, const std::string& note) {
-  const std::size_t end = table.find("endheader\n");
-  FOOTING_CHECK(end != std::string::npos);
-  return table.insert(end, note + "\n");
-}
-
-/// Says to OpenSim's tools which columns of the forces act on which foot, at which point.
-std::string ExternalLoads(const std::string& name) {
-  std::string xml =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n"
-      "<ExternalLoads name=\"" +
-      name + "_loads\">\n<objects>\n";
-  for (const bool left : {false, true}) {
-    const std::string side = left ? "l" : "r";
-    xml += "<ExternalForce name=\"foot_" + side +
-           "\">\n<appliesForce>true</appliesForce>\n<applied_to_body>" +
-           joint_angles::OpenSimFoot(left) +
-           "</applied_to_body>\n<force_expressed_in_body>ground</force_expressed_in_body>\n"
-           "<point_expressed_in_body>ground</point_expressed_in_body>\n<force_identifier>"
-           "ground_force_" +
-           side + "_v</force_identifier>\n<point_identifier>ground_force_" + side +
-           "_p</point_identifier>\n<torque_identifier>ground_torque_" + side +
-           "_</torque_identifier>\n<data_source_name>Unassigned</data_source_name>\n"
-           "</ExternalForce>\n";
-  }
-  return xml + "</objects>\n<groups />\n<datafile>" + name +
-         "_grf.mot</datafile>\n</ExternalLoads>\n</OpenSimDocument>\n";
 }
 
 Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,

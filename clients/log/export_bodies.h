@@ -82,6 +82,12 @@ using FootForces = std::array<FootForce, 2>;
 /// force is known; the others and the free moments are 0.
 motion::Table ForceTable(const std::vector<FootForces>& forces, double rate_hz);
 
+/// A table of OpenSim with a line for people in its header, which readers pass over.
+std::string WithNote(std::string table, const std::string& note);
+
+/// Says to OpenSim's tools which columns of "NAME_grf.mot" (ForceTable) act on which foot.
+std::string ExternalLoads(const std::string& name);
+
 /// A reconstructed body as a C3D file holds it: the centres of the joints as points, the forces
 /// under the feet as two force plates. Axes: W (x ahead, y left, z up).
 ///

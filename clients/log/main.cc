@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
       "  footing-log export a.mcap --format bvh --skeleton humanoid --out a/\n"
       "  footing-log repair cut.mcap --out whole.mcap\n"
       "  footing-log recalibrate a.mcap --camera camera.json --out again.mcap\n"
+      "  footing-log align a.mcap --with squats.c3d --out opensim/\n"
       "  footing-log serve a.mcap --listen unix:/tmp/replay.sock\n"
       "  footing-log osc --to 127.0.0.1:39539 --format vmc\n"
       "  footing-log serve-control --root study/    # others start and stop recordings\n"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   footing::log_client::AddRepairCommand(*app, shared);
   footing::log_client::AddRecalibrateCommand(*app, shared);
   footing::log_client::AddServeCommand(*app, shared);
+  footing::log_client::AddAlignCommand(*app, shared);
   footing::log_client::AddOscCommand(*app, shared);
   footing::log_client::AddServeControlCommand(*app, shared);
   footing::log_client::AddLslCommand(*app, shared);
