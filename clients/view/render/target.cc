@@ -145,7 +145,7 @@ void InstancedShape::Draw(const Program& program, const std::vector<scene::Part>
 }
 
 PartShapes::PartShapes()
-    : ball_(scene::UnitBall(32, 18), InstancedShape::Kind::kSolid),
+    : ball_(scene::UnitBall(24, 14), InstancedShape::Kind::kSolid),
       coarse_ball_(scene::UnitBall(12, 6), InstancedShape::Kind::kSolid),
       rod_(scene::UnitRod(16), InstancedShape::Kind::kRod),
       limb_(scene::UnitLimb(16, 4), InstancedShape::Kind::kLimb),
@@ -160,51 +160,79 @@ void PartShapes::Draw(const Program& program, const scene::PartList& parts, bool
 
 namespace {
 
-constexpr int kShadowPixels = 512;
+// The shadow's edge is soft: more pixels would show nothing more.
+constexpr int kSharpPixels = 256, kSoftPixels = 128;
+
+/// Draws into a framebuffer of that many pixels each way while it lives.
+class DrawingInto {
+ public:
+  DrawingInto(const Framebuffer& framebuffer, int pixels) {
+    glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before_);
+    glGetIntegerv(GL_VIEWPORT, viewport_.data());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    glViewport(0, 0, pixels, pixels);
+    glDisable(GL_DEPTH_TEST);
+  }
+  ~DrawingInto() {
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before_));
+    glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+  }
+  DrawingInto(const DrawingInto&) = delete;
+  DrawingInto& operator=(const DrawingInto&) = delete;
+
+ private:
+  GLint before_ = 0;
+  std::array<GLint, 4> viewport_{};
+};
 
 }  // namespace
 
-ShadowMap::ShadowMap() {
-  glBindTexture(GL_TEXTURE_2D, texture_.name());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowPixels, kShadowPixels, 0, GL_RED, GL_UNSIGNED_BYTE,
-               nullptr);
-  glGenerateMipmap(GL_TEXTURE_2D);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+ShadowMap::Layer::Layer(int pixels, bool with_copies) {
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, pixels, pixels, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+  if (with_copies) glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER,
+                  with_copies ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  GLint before = 0;
-  glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
-  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+  const DrawingInto into(framebuffer, pixels);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
 }
+
+ShadowMap::ShadowMap() : sharp_(kSharpPixels, true), soft_(kSoftPixels, false) {}
 
 void ShadowMap::Draw(const Program& program, PartShapes& shapes, const scene::PartList& figures,
                      const Eigen::Vector3f& centre_m) {
-  GLint before = 0;
-  std::array<GLint, 4> viewport{};
-  glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
-  glGetIntegerv(GL_VIEWPORT, viewport.data());
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-  glViewport(0, 0, kShadowPixels, kShadowPixels);
-  glDisable(GL_DEPTH_TEST);
+  const DrawingInto into(sharp_.framebuffer, kSharpPixels);
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT);
   program.Use();
   program.Set("u_centre", centre_m);
   program.Set("u_span", kMarkSpanM);
   shapes.Draw(program, figures, true);
-  // The mark's edge is soft: it is read from the smaller copies.
-  glBindTexture(GL_TEXTURE_2D, texture_.name());
+  // It is softened from the smaller copies.
+  glBindTexture(GL_TEXTURE_2D, sharp_.texture.name());
   glGenerateMipmap(GL_TEXTURE_2D);
-  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
-  glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+}
+
+void ShadowMap::Soften(const Program& program, const std::vector<Eigen::Vector4f>& blobs,
+                       const Eigen::Vector3f& centre_m) {
+  const DrawingInto into(soft_.framebuffer, kSoftPixels);
+  program.Use();
+  program.Set("u_centre", centre_m);
+  program.Set("u_span", kMarkSpanM);
+  program.Set("u_shadow", 0);
+  program.Set("u_blobs", blobs);
+  program.Set("u_blob_count", static_cast<int>(blobs.size()));
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, sharp_.texture.name());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
 void ShadowMap::Bind() const {
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, texture_.name());
+  glBindTexture(GL_TEXTURE_2D, soft_.texture.name());
 }
 
 namespace {

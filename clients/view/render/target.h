@@ -121,15 +121,25 @@ class PartShapes {
 class ShadowMap {
  public:
   ShadowMap();
-  /// Draws the figures' outline around `centre_m` and binds the framebuffer of before again.
+  /// Draws the figures' outline around `centre_m`. This and the next bind the framebuffer of before
+  /// again.
   void Draw(const Program& program, PartShapes& shapes, const scene::PartList& figures,
             const Eigen::Vector3f& centre_m);
-  /// Binds it as the texture of unit 0.
+  /// Softens it, and darkens it by `blobs` (x, y, radius, darkness): what is left is the square
+  /// root of the light.
+  void Soften(const Program& program, const std::vector<Eigen::Vector4f>& blobs,
+              const Eigen::Vector3f& centre_m);
+  /// Binds the softened shadow as the texture of unit 0.
   void Bind() const;
 
  private:
-  Framebuffer framebuffer_;
-  Texture texture_;
+  /// A picture that is drawn into, then read.
+  struct Layer {
+    explicit Layer(int pixels, bool with_copies);
+    Framebuffer framebuffer;
+    Texture texture;
+  };
+  Layer sharp_, soft_;
 };
 
 /// Pixels, red green blue, top row first.

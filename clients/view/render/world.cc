@@ -319,12 +319,51 @@ void main() {
 )";
 }
 
-std::string MarkFragmentText() {
+// Softened once in a small picture: a software renderer pays for every pixel of the mark.
+std::string SoftVertexText() {
+  return SharedText() + R"(
+out vec2 v_at;
+void main() {
+  vec2 corner = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID >> 1) * 2 - 1);
+  v_at = 0.5 + 0.5 * corner;
+  gl_Position = vec4(corner, 0.0, 1.0);
+}
+)";
+}
+
+std::string SoftFragmentText() {
   return SharedText() + R"(
 uniform sampler2D u_shadow;
+uniform vec3 u_centre;
+uniform float u_span;
 uniform vec4 u_blobs[)" +
          std::to_string(kMaxBlobs) + R"(];  // x, y, radius, darkness
 uniform int u_blob_count;
+in vec2 v_at;
+out vec4 o_colour;
+void main() {
+  float shadow = 0.0;
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      float weight = (2.0 - abs(float(x))) * (2.0 - abs(float(y)));
+      shadow += weight * textureLod(u_shadow, v_at + 0.0095 * vec2(x, y), 1.3).r;
+    }
+  }
+  float light = 1.0 - 0.56 * shadow / 16.0;
+  vec2 place = u_centre.xy + u_span * (v_at - 0.5);
+  for (int i = 0; i < u_blob_count; ++i) {
+    vec2 away = (place - u_blobs[i].xy) / u_blobs[i].z;
+    light *= 1.0 - u_blobs[i].w * exp(-2.2 * dot(away, away));
+  }
+  // The picture holds square roots of light; what lies over it takes a share of it away.
+  o_colour = vec4(sqrt(light));
+}
+)";
+}
+
+std::string MarkFragmentText() {
+  return SharedText() + R"(
+uniform sampler2D u_soft;
 uniform vec4 u_rings[)" +
          std::to_string(kMaxFootholds) + R"(];  // x, y, z
 uniform int u_ring_count;
@@ -334,27 +373,14 @@ out vec4 o_colour;
 void main() {
   vec2 inside = min(v_at, 1.0 - v_at);
   float edge = clamp(min(inside.x, inside.y) * 12.0, 0.0, 1.0);
-  float shadow = 0.0;
-  for (int y = -1; y <= 1; ++y) {
-    for (int x = -1; x <= 1; ++x) {
-      float weight = (2.0 - abs(float(x))) * (2.0 - abs(float(y)));
-      shadow += weight * textureLod(u_shadow, v_at + 0.0095 * vec2(x, y), 2.3).r;
-    }
-  }
-  float light = 1.0 - 0.56 * shadow / 16.0;
-  for (int i = 0; i < u_blob_count; ++i) {
-    vec2 away = (v_position.xy - u_blobs[i].xy) / u_blobs[i].z;
-    light *= 1.0 - u_blobs[i].w * exp(-2.2 * dot(away, away));
-  }
   float ring = 0.0;
   for (int i = 0; i < u_ring_count; ++i) {
     float away = distance(v_position.xy, u_rings[i].xy);
     float rim = (away - 0.13) / 0.016;
     ring += exp(-rim * rim) + 0.30 * exp(-100.0 * away * away);
   }
-  // The picture holds square roots of light; what lies over it takes a share of it away.
   ring = min(ring, 1.0) * 0.75 * edge;
-  float dark = (1.0 - sqrt(light)) * edge;
+  float dark = (1.0 - texture(u_soft, v_at).r) * edge;
   o_colour = vec4(vec3(1.0, 0.96, 0.74) * ring, 1.0 - (1.0 - dark) * (1.0 - ring));
 }
 )";
@@ -388,12 +414,14 @@ Result<World> World::Create() {
   if (!ground) return ground.error();
   auto ribbon = Program::Create("ribbon", RibbonVertexText(), SurfaceFragmentText(true));
   if (!ribbon) return ribbon.error();
+  auto soft = Program::Create("soft shadow", SoftVertexText(), SoftFragmentText());
+  if (!soft) return soft.error();
   auto mark = Program::Create("mark", MarkVertexText(), MarkFragmentText());
   if (!mark) return mark.error();
   auto sky = Program::Create("sky", SkyVertexText(), SkyFragmentText());
   if (!sky) return sky.error();
   return World({std::move(*part), std::move(*part_id), std::move(*shadow), std::move(*ground),
-                std::move(*ribbon), std::move(*mark), std::move(*sky)});
+                std::move(*ribbon), std::move(*soft), std::move(*mark), std::move(*sky)});
 }
 
 World::World(Programs programs) : programs_(std::move(programs)) { sky_.Upload(scene::BuildSky()); }
@@ -463,6 +491,8 @@ void World::DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
                                  kToShadowM.head<2>().dot(spot.slope));
     const Eigen::Vector3f centre = spot.centre_m + beside;
     shadow_map_.Draw(programs_.shadow, shapes_, picture.figures, centre);
+    glBindVertexArray(nothing_.name());
+    shadow_map_.Soften(programs_.soft, blobs, centre);
     const Program& program = programs_.mark;
     program.Use();
     program.Set("u_clip_from_world", clip_from_world);
@@ -470,9 +500,7 @@ void World::DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
     program.Set("u_centre", centre);
     program.Set("u_slope", Eigen::Vector3f(spot.slope.x(), spot.slope.y(), 0));
     program.Set("u_span", kMarkSpanM);
-    program.Set("u_shadow", 0);
-    program.Set("u_blobs", blobs);
-    program.Set("u_blob_count", static_cast<int>(blobs.size()));
+    program.Set("u_soft", 0);
     program.Set("u_rings", rings);
     program.Set("u_ring_count", static_cast<int>(rings.size()));
     shadow_map_.Bind();

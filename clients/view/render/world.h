@@ -27,7 +27,10 @@ std::string GroundVertexText();
 std::string RibbonVertexText();
 /// Ground and track alike; `ribbon` chooses.
 std::string SurfaceFragmentText(bool ribbon);
-/// Shadow, soft spots and rings: a square laid over the ground, with alpha.
+/// Shadow and soft spots, into a small picture of the square of ground.
+std::string SoftVertexText();
+std::string SoftFragmentText();
+/// That picture and rings: a square laid over the ground, with alpha.
 std::string MarkVertexText();
 std::string MarkFragmentText();
 std::string SkyVertexText();
@@ -54,7 +57,7 @@ class World {
 
  private:
   struct Programs {
-    Program part, part_id, shadow, ground, ribbon, mark, sky;
+    Program part, part_id, shadow, ground, ribbon, soft, mark, sky;
   };
   explicit World(Programs programs);
   void DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
