@@ -77,19 +77,93 @@ void FullScreen::Toggle(GLFWwindow* window) {
   full_ = true;
 }
 
-void WindowMouse::Move(GLFWwindow* window, double x, double y) {
-  int width = 0, height = 0;
-  glfwGetWindowSize(window, &width, &height);
-  at = Eigen::Vector2d(x, y) / std::max(1, height);
-  orbit.Move(at);
+namespace {
+
+constexpr double kNoticeS = 4;
+
+void OnLetter(GLFWwindow* window, unsigned int letter) {
+  // The question mark is a letter, on whichever key the layout has it.
+  render::HudOptions& hud = ControlsOf(window).hud;
+  if (letter == '?') hud.keys = !hud.keys;
 }
 
-void WindowMouse::Button(int action) {
-  if (action == GLFW_PRESS) {
-    orbit.Press(at, NanosecondsToSeconds(clock::MonotonicNs()));
-  } else {
-    orbit.Release();
+void OnButton(GLFWwindow* window, int button, int action, int) {
+  WindowControls& controls = ControlsOf(window);
+  const ImVec2 at = controls.mouse.at();
+  const bool is_left = button == GLFW_MOUSE_BUTTON_LEFT;
+  if (action == GLFW_PRESS && is_left && controls.timeline &&
+      at.y >= controls.timeline->bar.low.y) {
+    controls.seeking = true;
+    return controls.seek(at.x);
   }
+  if (action == GLFW_PRESS) {
+    controls.mouse.Press(is_left ? ViewMouse::Button::kLeft : ViewMouse::Button::kOther,
+                         NanosecondsToSeconds(clock::MonotonicNs()));
+    return;
+  }
+  controls.seeking = false;
+  if (const auto push = controls.mouse.Release()) controls.pushed = push;
+}
+
+/// A window may count in larger units than the picture's pixels.
+void OnMove(GLFWwindow* window, double x, double y) {
+  WindowControls& controls = ControlsOf(window);
+  int width = 0, height = 0;
+  glfwGetWindowSize(window, &width, &height);
+  const PixelSize size = PictureSize(window);
+  const double across = width > 0 ? static_cast<double>(size.width) / width : 1;
+  const double up = height > 0 ? static_cast<double>(size.height) / height : 1;
+  controls.mouse.Move({static_cast<float>(x * across), static_cast<float>(y * up)});
+  if (controls.seeking) controls.seek(controls.mouse.at().x);
+}
+
+void OnScroll(GLFWwindow* window, double, double notches) {
+  ControlsOf(window).mouse.Scroll(notches);
+}
+
+void OnDrop(GLFWwindow* window, int count, const char** paths) {
+  ControlsOf(window).dropped.assign(paths, paths + count);
+}
+
+}  // namespace
+
+WindowControls& ControlsOf(GLFWwindow* window) {
+  return *static_cast<WindowControls*>(glfwGetWindowUserPointer(window));
+}
+
+void Listen(GLFWwindow* window, WindowControls& controls, GLFWkeyfun on_key) {
+  glfwSetWindowUserPointer(window, &controls);
+  glfwSetKeyCallback(window, on_key);
+  glfwSetCharCallback(window, OnLetter);
+  glfwSetMouseButtonCallback(window, OnButton);
+  glfwSetCursorPosCallback(window, OnMove);
+  glfwSetScrollCallback(window, OnScroll);
+  glfwSetDropCallback(window, OnDrop);
+}
+
+void OnSharedKey(GLFWwindow* window, int key) {
+  WindowControls& controls = ControlsOf(window);
+  render::HudOptions& hud = controls.hud;
+  if (key == GLFW_KEY_F) hud.forces = !hud.forces;
+  if (key == GLFW_KEY_O) hud.overlay_reference = !hud.overlay_reference;
+  if (key == GLFW_KEY_H) hud.hidden = !hud.hidden;
+  if (key == GLFW_KEY_F1) hud.keys = !hud.keys;
+  if (key == GLFW_KEY_Z) controls.mouse.Reset();
+  if (key == GLFW_KEY_F11) controls.full_screen.Toggle(window);
+  if (key == GLFW_KEY_Q || (key == GLFW_KEY_ESCAPE && !controls.mouse.Cancel()))
+    glfwSetWindowShouldClose(window, GLFW_TRUE);
+}
+
+void WindowControls::Say(const std::string& text) {
+  hud.notice = text;
+  notice_until_ns = clock::MonotonicNs() + SecondsToNanoseconds(kNoticeS);
+}
+
+void WindowControls::Refresh(GLFWwindow* window) {
+  if (clock::MonotonicNs() > notice_until_ns) hud.notice.clear();
+  hud.window = mouse.window();
+  hud.pointer.reset();
+  if (glfwGetWindowAttrib(window, GLFW_HOVERED) == GLFW_TRUE) hud.pointer = mouse.at();
 }
 
 PixelSize PictureSize(GLFWwindow* window) {
@@ -103,8 +177,9 @@ PixelSize BeginPicture(GLFWwindow* window) {
   return PictureSize(window);
 }
 
-void EndPicture(GLFWwindow* window, std::int64_t begun_ns) {
+void EndPicture(GLFWwindow* window, std::int64_t begun_ns, PictureTimes& times) {
   glfwSwapBuffers(window);
+  times.Add(begun_ns, clock::MonotonicNs());
   // Minimised, or on a display without vertical sync, the loop must not spin.
   clock::SleepUntil(begun_ns + SecondsToNanoseconds(1.0 / 125));
 }

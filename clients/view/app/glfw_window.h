@@ -3,12 +3,17 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "clients/view/app/options.h"
-#include "clients/view/scene/camera.h"
+#include "clients/view/app/play_summary.h"
+#include "clients/view/app/view_mouse.h"
+#include "clients/view/render/hud.h"
 #include "common/base/result.h"
 
 namespace footing::view {
@@ -45,16 +50,31 @@ class FullScreen {
   int left_ = 0, top_ = 0, width_ = 0, height_ = 0;  ///< Window before full screen.
 };
 
-/// A mouse that turns the view. Presses are at the place of the move before them: a slow picture
-/// handles many events at once, when the mouse itself is already further on.
-struct WindowMouse {
-  scene::MouseOrbit orbit;
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< In heights of the window; y runs down.
+/// State that the callbacks of a window change, live or in playback.
+struct WindowControls {
+  render::HudOptions hud;
+  ViewMouse mouse = {};
+  FullScreen full_screen = {};
+  std::optional<render::TimelineBoxes> timeline = {};  ///< Boxes in the picture drawn last.
+  std::function<void(float column)> seek = {};         ///< A press or drag on the timeline.
+  bool seeking = false;
+  std::vector<std::string> dropped = {};   ///< Files, until the loop looks at them.
+  std::optional<scene::Push> pushed = {};  ///< A push that the loop has yet to send.
+  std::int64_t notice_until_ns = 0;
 
-  /// The arguments of GLFW's callbacks.
-  void Move(GLFWwindow* window, double x, double y);
-  void Button(int action);
+  /// Text for a person, over the picture for some seconds.
+  void Say(const std::string& text);
+  /// Puts the mouse and the notice into the options of the next picture.
+  void Refresh(GLFWwindow* window);
 };
+
+/// Sets all callbacks of the window; `on_key` for the keys that live view and playback do not
+/// share. `controls` must outlive the next call.
+void Listen(GLFWwindow* window, WindowControls& controls, GLFWkeyfun on_key);
+/// The controls of the last Listen.
+WindowControls& ControlsOf(GLFWwindow* window);
+/// Keys of both: panels, list of keys, full screen, first view, end.
+void OnSharedKey(GLFWwindow* window, int key);
 
 /// Size of a picture, pixels.
 struct PixelSize {
@@ -64,7 +84,8 @@ struct PixelSize {
 PixelSize PictureSize(GLFWwindow* window);
 /// Binds the window's own framebuffer; returns its size.
 PixelSize BeginPicture(GLFWwindow* window);
-/// Shows the picture; waits where the display does not, so that the loop does not spin.
-void EndPicture(GLFWwindow* window, std::int64_t begun_ns);
+/// Shows the picture that was begun at `begun_ns`; waits where the display does not, so that the
+/// loop does not spin.
+void EndPicture(GLFWwindow* window, std::int64_t begun_ns, PictureTimes& times);
 
 }  // namespace footing::view

@@ -89,7 +89,7 @@ footing::Result<void> Run(const Options& options) {
         "--camera " +
         options.camera.calibration_file);
   if (options.text) return RunTextView(options);
-  if (footing::view::HasDisplay()) return RunWindow(options);
+  if (footing::view::HasDisplay()) return RunWindow(options, std::nullopt);
   footing::log::Info("no display: showing the state as text (--screenshot draws without one)");
   return RunTextView(options);
 }
@@ -135,8 +135,8 @@ void AddPictureOptions(CLI::App& app, Options& options) {
       ->check(CLI::Range(-86400.0, 1e6));
   app.add_option(
       "--record", options.record,
-      "Folder to draw numbered PNG files into, or a film: NAME.mp4, .webm or .gif (needs "
-      "ffmpeg)");
+      "Folder to draw numbered PNG files into, or a film: NAME.mp4, .webm or .gif (by ffmpeg or "
+      "GStreamer; without either a folder NAME)");
   app.add_option("--record-hz", options.record_hz, "Rate of the pictures of --record, Hz")
       ->check(CLI::Range(0.1, 60.0));
   app.add_option("--seconds", options.seconds, "Duration, s (0: until the window is closed)")
@@ -174,6 +174,7 @@ int main(int argc, char** argv) {
       "  footing-view --recording walk.mcap\n"
       "  footing-view --recording study.mcap --trial p07-1 --beside study.mcap:p07-2\n"
       "  footing-view --screenshot bird.png --at 5\n"
+      "  footing-view --recording walk.mcap --record walk.mp4 --record-hz 30\n"
       "  footing-view --camera-preview\n"
       "  footing-view --next-subject p08.json --next-subject p09.json\n"
       "  footing-view --text --seconds 30 --json");

@@ -42,15 +42,37 @@ std::string EndingOf(const std::string& path) {
   return text::Lower(fs::path(path).extension().string());
 }
 
-/// The program ffmpeg on the PATH; empty where it is not installed.
-std::string FindEncoder() {
+/// A program on the PATH; empty where it is not installed.
+std::string FindProgram(const std::string& name) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string program = folder + "/ffmpeg";
+    const std::string program = folder + "/" + name;
     if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
   }
   return "";
+}
+
+/// Starts a program that reads `input`, with its standard output thrown away; an errno, or 0.
+int Spawn(std::vector<std::string> arguments, int input, pid_t& child) {
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  const int failed =
+      posix_spawn(&child, pointers.front(), &actions, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  return failed;
+}
+
+bool Succeeds(const std::vector<std::string>& arguments) {
+  pid_t child = -1;
+  int status = 0;
+  return Spawn(arguments, STDIN_FILENO, child) == 0 && waitpid(child, &status, 0) == child &&
+         WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 bool IsNumberedPicture(const fs::path& file) {
@@ -59,34 +81,97 @@ bool IsNumberedPicture(const fs::path& file) {
          std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-std::vector<std::string> EncoderArguments(const std::string& program, const std::string& path,
-                                          double hz, const render::Image& first) {
-  std::vector<std::string> arguments{
-      program,
-      "-loglevel",
-      "error",
-      "-n",
-      "-f",
-      "rawvideo",
-      "-pixel_format",
-      "rgb24",
-      "-video_size",
-      std::to_string(first.width) + "x" + std::to_string(first.height),
-      "-framerate",
-      text::Fixed(hz, 3),
-      "-i",
-      "pipe:0"};
+/// Elements of GStreamer that write a film of one ending; null where it has none.
+struct GstreamerFilm {
+  const char* encoder = nullptr;
+  const char* container = nullptr;
+};
+
+GstreamerFilm GstreamerFilmOf(const std::string& ending) {
+  if (ending == ".webm") return {"vp8enc", "webmmux"};
+  if (ending == ".mp4") return {"x264enc", "mp4mux"};
+  if (ending == ".mov") return {"x264enc", "qtmux"};
+  if (ending == ".mkv") return {"x264enc", "matroskamux"};
+  return {};
+}
+
+/// The command that GStreamer makes a film with; its program alone is empty where the program or a
+/// plug-in is missing.
+std::string FindGstreamer(const std::string& path) {
+  const GstreamerFilm film = GstreamerFilmOf(EndingOf(path));
+  const std::string inspect = FindProgram("gst-inspect-1.0");
+  if (film.encoder == nullptr || inspect.empty()) return "";
+  for (const char* element : {film.encoder, film.container, "rawvideoparse", "videoconvert"}) {
+    if (!Succeeds({inspect, "--exists", element})) return "";
+  }
+  return FindProgram("gst-launch-1.0");
+}
+
+/// A name that begins with a minus must not be an option.
+std::string AsArgument(const std::string& path) { return path.front() == '-' ? "./" + path : path; }
+
+std::vector<std::string> FfmpegCommand(const std::string& program, const std::string& path,
+                                       double hz, const render::Image& first) {
+  const std::string size = std::to_string(first.width) + "x" + std::to_string(first.height);
+  std::vector<std::string> command{program,      "-loglevel",        "error", "-n",          "-f",
+                                   "rawvideo",   "-pixel_format",    "rgb24", "-video_size", size,
+                                   "-framerate", text::Fixed(hz, 3), "-i",    "pipe:0"};
   const std::string ending = EndingOf(path);
   if (ending == ".gif" || ending == ".webp") {
-    arguments.insert(arguments.end(), {"-loop", "0"});
+    command.insert(command.end(), {"-loop", "0"});
   } else {
     // Common players need an even number of pixels each way, and colours at half their size.
-    arguments.insert(arguments.end(),
-                     {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"});
+    command.insert(command.end(), {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"});
   }
-  // A name that begins with a minus must not be an option.
-  arguments.push_back(path.front() == '-' ? "./" + path : path);
-  return arguments;
+  command.push_back(AsArgument(path));
+  return command;
+}
+
+std::vector<std::string> GstreamerCommand(const std::string& program, const std::string& path,
+                                          double hz, const render::Image& first) {
+  const GstreamerFilm film = GstreamerFilmOf(EndingOf(path));
+  const auto milli_hz = std::to_string(static_cast<int>(1e3 * hz + 0.5));
+  // As for ffmpeg: an even number of pixels.
+  return {program,
+          "-q",
+          "fdsrc",
+          "fd=0",
+          "!",
+          "rawvideoparse",
+          "format=rgb",
+          "width=" + std::to_string(first.width),
+          "height=" + std::to_string(first.height),
+          "framerate=" + milli_hz + "/1000",
+          "!",
+          "videobox",
+          "right=-" + std::to_string(first.width % 2),
+          "bottom=-" + std::to_string(first.height % 2),
+          "!",
+          "videoconvert",
+          "!",
+          "video/x-raw,format=I420",
+          "!",
+          film.encoder,
+          "!",
+          film.container,
+          "!",
+          "filesink",
+          "location=" + AsArgument(path)};
+}
+
+/// The folder of numbered pictures that takes a film's place.
+std::string FolderOf(const std::string& film) {
+  return fs::path(film).replace_extension().string();
+}
+
+Result<void> CheckFolder(const std::string& folder) {
+  std::error_code none;
+  for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none)) {
+    if (!IsNumberedPicture(at->path())) continue;
+    return UsageError("--record " + folder + ": the folder has pictures already (" +
+                      at->path().filename().string() + "); remove them, or name another folder");
+  }
+  return {};
 }
 
 }  // namespace
@@ -104,24 +189,10 @@ bool IsFilm(const std::string& path) {
 
 Result<void> CheckRecordName(const std::string& path) {
   std::error_code none;
-  if (IsFilm(path) && !fs::is_directory(path, none)) {
-    if (fs::exists(path, none)) {
-      return UsageError("--record " + path +
-                        ": there is such a file already; remove it, or name another one");
-    }
-    if (FindEncoder().empty()) {
-      return UsageError("--record " + path +
-                        ": ffmpeg, which makes the film, is not installed; apt install ffmpeg, "
-                        "or name a folder for numbered pictures");
-    }
-    return {};
-  }
-  for (fs::directory_iterator at(path, none), end; !none && at != end; at.increment(none)) {
-    if (!IsNumberedPicture(at->path())) continue;
-    return UsageError("--record " + path + ": the folder has pictures already (" +
-                      at->path().filename().string() + "); remove them, or name another folder");
-  }
-  return {};
+  if (!IsFilm(path) || fs::is_directory(path, none)) return CheckFolder(path);
+  if (!fs::exists(path, none)) return {};
+  return UsageError("--record " + path +
+                    ": there is such a file already; remove it, or name another one");
 }
 
 std::string NumberedPicture(const std::string& folder, int number) {
@@ -132,15 +203,30 @@ std::string NumberedPicture(const std::string& folder, int number) {
 
 Result<PictureSink> PictureSink::Open(const std::string& path, double hz) {
   std::error_code error;
-  if (!IsFilm(path)) fs::create_directories(path, error);
-  if (error) return Failure("cannot make the folder " + path + ": " + error.message());
-  // With the folder there: "new/../old" names one only then.
   if (auto checked = CheckRecordName(path); !checked) return checked.error();
-  return PictureSink(path, hz);
+  PictureSink sink(path, hz);
+  if (IsFilm(path) && !fs::is_directory(path, error)) {
+    sink.encoder_ = FindProgram("ffmpeg");
+    sink.make_command_ = FfmpegCommand;
+    if (!sink.encoder_.empty()) return sink;
+    sink.encoder_ = FindGstreamer(path);
+    sink.make_command_ = GstreamerCommand;
+    if (!sink.encoder_.empty()) return sink;
+    sink.path_ = FolderOf(path);
+    log::Warning("no ffmpeg or GStreamer for " + path + ": writing numbered pictures into " +
+                 sink.path_ + "/ (a film needs: apt install ffmpeg)");
+  }
+  fs::create_directories(sink.path_, error);
+  if (error) return Failure("cannot make the folder " + sink.path_ + ": " + error.message());
+  // With the folder there: "new/../old" names one only then.
+  if (auto checked = CheckFolder(sink.path_); !checked) return checked.error();
+  return sink;
 }
 
 PictureSink::PictureSink(PictureSink&& other) noexcept
     : path_(std::move(other.path_)),
+      encoder_(std::move(other.encoder_)),
+      make_command_(other.make_command_),
       hz_(other.hz_),
       count_(other.count_),
       to_film_(std::exchange(other.to_film_, -1)),
@@ -155,31 +241,20 @@ void PictureSink::CloseFilm() {
 
 // A socket in place of a pipe: an encoder that has ended is an error here, and not a signal.
 Result<void> PictureSink::StartFilm(const render::Image& first) {
-  const std::string program = FindEncoder();
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return Failure("cannot make the film " + path_ + ": " + std::strerror(errno));
   }
-  std::vector<std::string> arguments = EncoderArguments(program, path_, hz_, first);
-  std::vector<char*> pointers;
-  for (std::string& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const int failed =
-      posix_spawn(&film_, program.c_str(), &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
+  const int failed = Spawn(make_command_(encoder_, path_, hz_, first), ends[1], film_);
   close(ends[1]);
   to_film_ = ends[0];
   if (failed == 0) return {};
   film_ = -1;
-  return Failure("cannot start ffmpeg for " + path_ + ": " + std::strerror(failed));
+  return Failure("cannot start " + encoder_ + " for " + path_ + ": " + std::strerror(failed));
 }
 
 Result<void> PictureSink::Add(const render::Image& image) {
-  if (!IsFilm(path_)) return render::WritePicture(image, NumberedPicture(path_, count_++));
+  if (encoder_.empty()) return render::WritePicture(image, NumberedPicture(path_, count_++));
   if (count_++ == 0) {
     if (auto started = StartFilm(image); !started) return started;
   }
@@ -188,8 +263,8 @@ Result<void> PictureSink::Add(const render::Image& image) {
         send(to_film_, image.rgb.data() + sent, image.rgb.size() - sent, MSG_NOSIGNAL);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {
-      return Failure("cannot write the film " + path_ +
-                     ": ffmpeg has ended; what it wrote above says why");
+      return Failure("cannot write the film " + path_ + ": " + encoder_ +
+                     " has ended; what it wrote above says why");
     }
     sent += static_cast<std::size_t>(got);
   }
@@ -202,8 +277,12 @@ Result<void> PictureSink::Finish() {
   int status = 0;
   const pid_t ended = waitpid(std::exchange(film_, -1), &status, 0);
   if (ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-  return Failure("cannot write the film " + path_ +
-                 ": ffmpeg failed; what it wrote above says why");
+  return Failure("cannot write the film " + path_ + ": " + encoder_ +
+                 " failed; what it wrote above says why");
+}
+
+std::string PictureSink::Written() const {
+  return "wrote " + std::to_string(count_) + " pictures to " + path_;
 }
 
 namespace {
@@ -296,7 +375,7 @@ Result<void> Record(Studio& studio) {
     if (!written) return written;
   }
   if (const auto finished = sink->Finish(); !finished) return finished;
-  log::Info((IsFilm(options.record) ? "wrote " : "wrote pictures to ") + options.record);
+  log::Info(sink->Written());
   if (late > 0) {
     log::Warning(std::to_string(late) + " of " + std::to_string(count) +
                  " pictures are late: this machine needs a lower --record-hz");

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -17,15 +18,17 @@ Result<void> CheckPictureName(const std::string& path);
 /// Whether the name is that of a film, by its ending: "walk.mp4".
 bool IsFilm(const std::string& path);
 
-/// UsageError where --record cannot go: into a folder that has pictures, over a film that is there,
-/// or into a film without the program ffmpeg.
+/// UsageError where --record cannot go: into a folder that has pictures, or over a film that is
+/// there.
 Result<void> CheckRecordName(const std::string& path);
 
 /// "folder/000042.png".
 std::string NumberedPicture(const std::string& folder, int number);
 
-/// Where the pictures of --record go: into a folder as numbered PNG files, or through ffmpeg into a
-/// film. Nothing that is there already is overwritten.
+/// Where the pictures of --record go: into a folder as numbered PNG files, or into a film through
+/// ffmpeg or GStreamer, which run as a child. Where neither is installed, a film's pictures go into
+/// a folder of its name without the ending, with a warning. Nothing that is there already is
+/// overwritten.
 class PictureSink {
  public:
   /// `hz` is the rate of the pictures. Makes the folder where it is missing.
@@ -37,19 +40,27 @@ class PictureSink {
 
   /// All pictures have the size of the first one.
   Result<void> Add(const render::Image& image);
-  /// Completes the film; the error says what ffmpeg said.
+  /// Completes the film; the error names the program that failed.
   Result<void> Finish();
-  int count() const { return count_; }
+  /// How many pictures went where, as a line for the log.
+  std::string Written() const;
 
  private:
   PictureSink(std::string path, double hz) : path_(std::move(path)), hz_(hz) {}
   Result<void> StartFilm(const render::Image& first);
   void CloseFilm();
 
+  /// The encoder's arguments for pictures of that size.
+  using MakeCommand = std::vector<std::string> (*)(const std::string& program,
+                                                   const std::string& path, double hz,
+                                                   const render::Image& first);
+
   std::string path_;
+  std::string encoder_;  ///< Program of a film; empty: numbered pictures.
+  MakeCommand make_command_ = nullptr;
   double hz_ = 0;
   int count_ = 0;
-  int to_film_ = -1;  ///< The socket that ffmpeg reads.
+  int to_film_ = -1;  ///< The socket that the encoder reads.
   pid_t film_ = -1;   ///< Its process.
 };
 

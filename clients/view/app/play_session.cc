@@ -150,22 +150,15 @@ constexpr std::array<std::pair<int, const char*>, 17> kKeyNames{{
 }};
 
 /// State that the callbacks of one window change.
-struct Controls {
+struct PlayControls : WindowControls {
+  explicit PlayControls(PlaySession& played) : session(played) {}
   PlaySession& session;
-  PlayPicture picture;
-  render::TimelineBoxes boxes;  ///< Boxes in the picture drawn last.
-  bool dragging = false;
-  WindowMouse mouse = {};
-  FullScreen full_screen = {};
+  bool with_timeline = true;
 };
-
-Controls& ControlsOf(GLFWwindow* window) {
-  return *static_cast<Controls*>(glfwGetWindowUserPointer(window));
-}
 
 void OnPlayKey(GLFWwindow* window, int key, int, int action, int) {
   if (action != GLFW_PRESS && action != GLFW_REPEAT) return;
-  Controls& controls = ControlsOf(window);
+  auto& controls = static_cast<PlayControls&>(ControlsOf(window));
   PlaySession& session = controls.session;
   for (const auto& [code, name] : kKeyNames) {
     if (code != key) continue;
@@ -174,63 +167,18 @@ void OnPlayKey(GLFWwindow* window, int key, int, int action, int) {
     session.head() = timeline::Act(session.head(), *asked, session.timeline(), kFrameS);
   }
   if (action != GLFW_PRESS) return;
-  render::HudOptions& hud = controls.picture.hud;
-  if (key == GLFW_KEY_F) hud.forces = !hud.forces;
-  if (key == GLFW_KEY_O) hud.overlay_reference = !hud.overlay_reference;
-  if (key == GLFW_KEY_H) hud.hidden = !hud.hidden;
-  if (key == GLFW_KEY_Z) controls.mouse.orbit.Reset();
-  if (key == GLFW_KEY_F11) controls.full_screen.Toggle(window);
-  if (key == GLFW_KEY_L) controls.picture.timeline = !controls.picture.timeline;
-  if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
+  if (key == GLFW_KEY_L) controls.with_timeline = !controls.with_timeline;
+  OnSharedKey(window, key);
 }
 
-// The question mark is a letter, on whichever key the layout has it.
-void OnPlayLetter(GLFWwindow* window, unsigned int letter) {
-  render::HudOptions& hud = ControlsOf(window).picture.hud;
-  if (letter == '?') hud.keys = !hud.keys;
+PlayPicture PictureOf(const PlayControls& controls) {
+  return {controls.hud, controls.with_timeline, controls.mouse.orbit(), controls.mouse.followed()};
 }
 
-/// The mouse in pixels of the picture: a window may count in larger units.
-ImVec2 MouseOf(GLFWwindow* window) {
-  double x = 0, y = 0;
-  int width = 0, height = 0;
-  glfwGetCursorPos(window, &x, &y);
-  glfwGetWindowSize(window, &width, &height);
-  const PixelSize size = PictureSize(window);
-  const double across = width > 0 ? static_cast<double>(size.width) / width : 1;
-  const double up = height > 0 ? static_cast<double>(size.height) / height : 1;
-  return {static_cast<float>(x * across), static_cast<float>(y * up)};
-}
-
-void SeekToMouse(GLFWwindow* window, Controls& controls) {
-  PlaySession& session = controls.session;
-  const double at_s =
-      render::PositionAt(controls.boxes.groove, session.timeline(), MouseOf(window).x);
-  session.head() = timeline::Sought(session.head(), at_s);
-}
-
-void OnButton(GLFWwindow* window, int button, int action, int) {
-  if (button != GLFW_MOUSE_BUTTON_LEFT) return;
-  Controls& controls = ControlsOf(window);
-  const bool on_bar = controls.picture.timeline && MouseOf(window).y >= controls.boxes.bar.low.y;
-  controls.dragging = action == GLFW_PRESS && on_bar;
-  if (controls.dragging) SeekToMouse(window, controls);
-  if (!on_bar || action != GLFW_PRESS) controls.mouse.Button(action);
-}
-
-void OnScroll(GLFWwindow* window, double, double notches) {
-  ControlsOf(window).mouse.orbit.Scroll(notches);
-}
-
-void OnMove(GLFWwindow* window, double x, double y) {
-  Controls& controls = ControlsOf(window);
-  if (controls.dragging) SeekToMouse(window, controls);
-  controls.mouse.Move(window, x, y);
-}
-
-void PlayLoop(GLFWwindow* window, const Options& options, render::Screen& screen,
-              Controls& controls) {
+Result<std::optional<PlaySession>> PlayLoop(GLFWwindow* window, const Options& options,
+                                            render::Screen& screen, PlayControls& controls) {
   StopSignal stop;
+  PictureTimes times;
   PlaySession& session = controls.session;
   const std::int64_t started_ns = clock::MonotonicNs();
   std::int64_t last_ns = started_ns;
@@ -238,41 +186,61 @@ void PlayLoop(GLFWwindow* window, const Options& options, render::Screen& screen
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !stop.asked() &&
          (options.seconds <= 0 || passed_s < options.seconds)) {
     glfwPollEvents();
+    if (auto dropped = TakeDropped(options, controls)) return dropped;
     const std::int64_t now_ns = clock::MonotonicNs();
-    if (!controls.dragging) {
+    if (!controls.seeking) {
       session.head() = timeline::Advanced(session.head(), NanosecondsToSeconds(now_ns - last_ns));
     }
     last_ns = now_ns;
     screen.set_display_scale(DisplayScale(window));
+    controls.Refresh(window);
     const PixelSize size = BeginPicture(window);
-    controls.picture.orbit = controls.mouse.orbit.orbit();
-    DrawSession(screen, session, controls.picture, size.width, size.height);
-    controls.boxes =
-        render::TimelineBoxesOf(screen, size.width, size.height, session.sides().size());
-    EndPicture(window, now_ns);
+    controls.mouse.SetViews(
+        DrawSession(screen, session, PictureOf(controls), size.width, size.height), false);
+    controls.timeline.reset();
+    if (controls.with_timeline) {
+      controls.timeline =
+          render::TimelineBoxesOf(screen, size.width, size.height, session.sides().size());
+    }
+    EndPicture(window, now_ns, times);
     passed_s = NanosecondsToSeconds(clock::MonotonicNs() - started_ns);
   }
-  if (options.json) std::cout << PlaySummary(session, passed_s) << std::endl;
+  if (options.json) std::cout << PlaySummary(session, passed_s, times) << std::endl;
+  return std::optional<PlaySession>();
 }
 
 }  // namespace
 
-Result<void> RunPlayWindow(const Options& options, PlaySession& session) {
-  const GlfwLibrary library;
-  const auto opened = OpenWindow(library, options);
-  if (!opened) return opened.error();
-  GLFWwindow* const window = opened->get();
+std::optional<PlaySession> TakeDropped(const Options& options, WindowControls& controls) {
+  const std::vector<std::string> files = std::exchange(controls.dropped, {});
+  // The subject's screen shows the subject's task, whatever falls on it.
+  if (files.empty() || options.subject) return std::nullopt;
+  PlayOptions play;
+  play.recording = files[0];
+  if (files.size() > 1) play.beside = files[1];
+  play.speed = options.play.speed;
+  auto session = PlaySession::Open(play, options.replay_falls);
+  if (session) return std::move(session).value();
+  controls.Say(session.error().message);
+  return std::nullopt;
+}
+
+Result<std::optional<PlaySession>> PlayInWindow(GLFWwindow* window, const Options& options,
+                                                PlaySession& session) {
   auto screen = ScreenFor(options, session);
   if (!screen) return screen.error();
-  Controls controls{session, PictureFor(options, session), {}};
-  glfwSetWindowUserPointer(window, &controls);
-  glfwSetKeyCallback(window, OnPlayKey);
-  glfwSetCharCallback(window, OnPlayLetter);
-  glfwSetMouseButtonCallback(window, OnButton);
-  glfwSetCursorPosCallback(window, OnMove);
-  glfwSetScrollCallback(window, OnScroll);
-  PlayLoop(window, options, **screen, controls);
-  return {};
+  PlayControls controls(session);
+  const PlayPicture picture = PictureFor(options, session);
+  controls.hud = picture.hud;
+  controls.with_timeline = picture.timeline;
+  controls.seek = [&](float column) {
+    if (!controls.timeline) return;
+    const double at_s = render::PositionAt(controls.timeline->groove, session.timeline(), column);
+    session.head() = timeline::Sought(session.head(), at_s);
+  };
+  Listen(window, controls, OnPlayKey);
+  glfwSetWindowTitle(window, ("Footing: " + session.sides().front().name).c_str());
+  return PlayLoop(window, options, **screen, controls);
 }
 
 namespace {
@@ -346,7 +314,7 @@ Result<void> RunPlayback(const Options& options) {
     return drawn;
   }
   if (options.text) return PlayAsText(options, *session);
-  if (HasDisplay()) return RunPlayWindow(options, *session);
+  if (HasDisplay()) return RunWindow(options, std::move(*session));
   log::Info("no display: showing the state as text (--screenshot draws without one)");
   return PlayAsText(options, *session);
 }
@@ -377,9 +345,10 @@ PlayPicture PictureFor(const Options& options, const PlaySession& session) {
   return picture;
 }
 
-void DrawSession(render::Screen& screen, PlaySession& session, const PlayPicture& picture,
-                 int width, int height) {
-  const scene::StageOptions stage{picture.hud.forces, picture.hud.overlay_reference};
+std::vector<DrawnView> DrawSession(render::Screen& screen, PlaySession& session,
+                                   const PlayPicture& picture, int width, int height) {
+  const scene::StageOptions stage{picture.hud.forces, picture.hud.overlay_reference,
+                                  picture.followed};
   const bool compared = session.sides().size() > 1;
   std::list<scene::Show::Shot> shots;
   std::vector<render::PlayedView> views;
@@ -395,6 +364,13 @@ void DrawSession(render::Screen& screen, PlaySession& session, const PlayPicture
   }
   render::DrawPlayback(screen, views, picture.hud, picture.timeline ? &line : nullptr, width,
                        height);
+  const std::vector<render::Box> boxes =
+      render::PlaybackBoxesOf(screen, width, height, views.size(), picture.timeline);
+  std::vector<DrawnView> drawn;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    drawn.push_back(ViewOf(screen, views[i].content, picture.hud, boxes[i]));
+  }
+  return drawn;
 }
 
 Result<std::unique_ptr<render::Screen>> ScreenFor(const Options& options,
@@ -437,7 +413,7 @@ Result<void> DrawPlayedPictures(const Options& options, PlaySession& session) {
     if (const auto written = sink->Add(draw()); !written) return written;
   }
   if (const auto finished = sink->Finish(); !finished) return finished;
-  log::Info("wrote " + std::to_string(count) + " pictures to " + options.record);
+  log::Info(sink->Written());
   return {};
 }
 

@@ -2,17 +2,23 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "clients/view/app/options.h"
 #include "clients/view/app/recorded_show.h"
+#include "clients/view/app/view_mouse.h"
 #include "clients/view/render/hud.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/scene/timeline.h"
 #include "common/base/result.h"
 
+struct GLFWwindow;
+
 namespace footing::view {
+
+struct WindowControls;
 
 /// One recording, or one of its trials, that is played.
 struct PlayedSide {
@@ -61,9 +67,14 @@ FileAndTrial SplitTrial(const std::string& text);
 /// Alignment of a name: "start", "finish", "wall".
 Result<timeline::Alignment> AlignmentNamed(const std::string& name);
 
-/// Plays in the window, until it is closed, Ctrl-C or options.seconds. A recording that is over
-/// stays at its last state.
-Result<void> RunPlayWindow(const Options& options, PlaySession& session);
+/// Plays in the window, until it is closed, Ctrl-C or options.seconds: then nothing; or until a
+/// recording is dropped on it: that one. A recording that is over stays at its last state.
+Result<std::optional<PlaySession>> PlayInWindow(GLFWwindow* window, const Options& options,
+                                                PlaySession& session);
+
+/// Opens the files that were dropped on a window: one, or two side by side. Says on `controls` why
+/// it cannot; nothing where no files were dropped.
+std::optional<PlaySession> TakeDropped(const Options& options, WindowControls& controls);
 
 /// Plays options.play: into the window, into pictures, or as text.
 Result<void> RunPlayback(const Options& options);
@@ -73,15 +84,16 @@ struct PlayPicture {
   render::HudOptions hud;
   bool timeline = true;
   scene::Orbit orbit = {};
+  std::uint32_t followed = 0;  ///< Character that the camera follows; 0: the first.
 };
 
 /// View that the options ask for: for the subject neither panels nor timeline; side by side no
 /// columns.
 PlayPicture PictureFor(const Options& options, const PlaySession& session);
 
-/// Draws all sides at the head's position into the bound framebuffer.
-void DrawSession(render::Screen& screen, PlaySession& session, const PlayPicture& picture,
-                 int width, int height);
+/// Draws all sides at the head's position into the bound framebuffer; returns where each is.
+std::vector<DrawnView> DrawSession(render::Screen& screen, PlaySession& session,
+                                   const PlayPicture& picture, int width, int height);
 
 /// A screen with a world for each side.
 Result<std::unique_ptr<render::Screen>> ScreenFor(const Options& options,

@@ -74,6 +74,14 @@ Json Markers(const timeline::Timeline& line) {
   return markers;
 }
 
+Json Events(const timeline::Timeline& line) {
+  Json events = Json::array();
+  for (const timeline::EventMark& event : line.events) {
+    events.push_back({{"at_s", event.at_s}, {"text", event.text}});
+  }
+  return events;
+}
+
 Json Playback(const PlaySession& session, const PlayedSide& side) {
   const timeline::SideState state = session.StateOf(side);
   const timeline::TrialMark* const trial = timeline::TrialAt(side.timeline, state.at_s);
@@ -89,21 +97,29 @@ Json Playback(const PlaySession& session, const PlayedSide& side) {
   playback["failures"] = Failures(side.timeline);
   playback["tasks"] = Tasks(side.timeline);
   playback["markers"] = Markers(side.timeline);
+  playback["events"] = Events(side.timeline);
   return playback;
 }
 
-Json SideSummary(const PlaySession& session, const PlayedSide& side, double seconds) {
-  Json summary = Json::parse(Summary(side.show.model(), seconds));
+Json SideSummary(const PlaySession& session, const PlayedSide& side, double seconds,
+                 const PictureTimes& times) {
+  Json summary = Json::parse(Summary(side.show.model(), seconds, times));
   summary["playback"] = Playback(session, side);
   return summary;
 }
 
 }  // namespace
 
-std::string PlaySummary(const PlaySession& session, double seconds) {
-  Json summary = SideSummary(session, session.sides().front(), seconds);
+void PictureTimes::Add(std::int64_t begun_ns, std::int64_t shown_ns) {
+  if (last_begun_ns != 0) interval.Add(begun_ns - last_begun_ns);
+  drawing.Add(shown_ns - begun_ns);
+  last_begun_ns = begun_ns;
+}
+
+std::string PlaySummary(const PlaySession& session, double seconds, const PictureTimes& times) {
+  Json summary = SideSummary(session, session.sides().front(), seconds, times);
   if (session.sides().size() > 1) {
-    summary["beside"] = SideSummary(session, session.sides()[1], seconds);
+    summary["beside"] = SideSummary(session, session.sides()[1], seconds, times);
   }
   return summary.dump();
 }
@@ -215,9 +231,18 @@ void AddCamera(const scene::CameraPreview& camera, nlohmann::ordered_json& summa
                        {"spheres", spheres}};
 }
 
+/// Pictures a second, by their median, and times of drawing.
+void AddTimes(const PictureTimes& times, nlohmann::ordered_json& summary) {
+  const double median_ms = times.interval.QuantileMs(0.5);
+  if (median_ms <= 0) return;
+  summary["frames_per_second"] = 1e3 / median_ms;
+  summary["frame_interval_p99_ms"] = times.interval.QuantileMs(0.99);
+  summary["drawing_p50_ms"] = times.drawing.QuantileMs(0.5);
+}
+
 }  // namespace
 
-std::string Summary(const scene::Model& model, double seconds) {
+std::string Summary(const scene::Model& model, double seconds, const PictureTimes& times) {
   nlohmann::ordered_json gaits = nlohmann::ordered_json::array();
   for (const stream::Gait gait : model.tally.GaitsSeen()) gaits.push_back(stream::Name(gait));
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
@@ -241,6 +266,7 @@ std::string Summary(const scene::Model& model, double seconds) {
       {"response_stages_p95_ms", stages},
       {"response_without_contact_p95_ms", model.tally.response_without_contact.QuantileMs(0.95)},
       {"simulated", scene::IsSimulated(model)}};
+  AddTimes(times, summary);
   AddTrial(model, summary);
   AddGame(model.game, summary);
   AddCamera(model.observed.camera, summary);

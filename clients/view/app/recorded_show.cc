@@ -70,7 +70,14 @@ class MarkCollector {
             {at_s, event.text(),
              event.marker().has_value() ? std::optional(event.marker().value()) : std::nullopt});
         return;
-      default:
+      case v1::Event::KIND_GAIT_CHANGED:  // There are as many of these as steps of a script.
+      case v1::Event::KIND_RESPONSE:
+        return;
+      case v1::Event::KIND_PUT_BACK:  // Every failure has one; a person's own stands alone.
+        if (event.by_operator()) marks_.timeline.events.push_back({at_s, event.text()});
+        return;
+      default:  // Kinds that a newer server adds are shown by their text, too.
+        if (!event.text().empty()) marks_.timeline.events.push_back({at_s, event.text()});
         return;
     }
   }
@@ -99,6 +106,7 @@ class MarkCollector {
     std::stable_sort(line.failures.begin(), line.failures.end(), earlier);
     std::stable_sort(line.tasks.begin(), line.tasks.end(), earlier);
     std::stable_sort(line.markers.begin(), line.markers.end(), earlier);
+    std::stable_sort(line.events.begin(), line.events.end(), earlier);
     // Those of the second server come behind all of the first one.
     std::sort(marks_.notes_ns.begin(), marks_.notes_ns.end());
     // footing-sim's own trials say more; whoever leads trials there needs no markers for them.
@@ -115,7 +123,7 @@ class MarkCollector {
     const std::size_t instants = std::max(
         {marks_.gait_changes_ns.size(), marks_.responses_ns.size(), marks_.notes_ns.size()});
     return std::max({line.trials.size(), line.failures.size(), line.tasks.size(),
-                     line.markers.size()}) >= timeline::kMostMarks ||
+                     line.markers.size(), line.events.size()}) >= timeline::kMostMarks ||
            instants >= kMostInstants;
   }
 
@@ -241,7 +249,7 @@ Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording) {
   }
   if (collector.too_many()) {
     return InvalidData(recording.path() + ": too many events; at most " +
-                       std::to_string(timeline::kMostMarks) + " failures are read");
+                       std::to_string(timeline::kMostMarks) + " of a kind are read");
   }
   TakeFrame(recording.LastOf(kPlayedSimulation, "characters", recording.last_ns()), collector);
   return collector.Take(recording.last_ns());

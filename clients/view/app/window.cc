@@ -24,56 +24,43 @@ namespace {
 
 constexpr char kSimulation[] = "footing-sim";
 
+/// Heights of the picture that an arrow key turns the view by.
+constexpr double kTurnByKey = 0.03;
+constexpr double kPushShownS = 0.3;
+
 /// State that the callbacks of the window change.
-struct LiveControls {
-  render::HudOptions hud;
-  WindowMouse mouse;
-  FullScreen full_screen;
-  std::string pressed;  ///< Capital letters of keys that the loop has yet to look at.
-  int markers = 0;      ///< Sent so far.
+struct LiveControls : WindowControls {
+  std::string pressed;              ///< Capital letters of keys that the loop has yet to look at.
+  int markers = 0;                  ///< Sent so far.
+  std::optional<scene::Push> sent;  ///< The last push, while its arrow is shown.
+  std::int64_t sent_ns = 0;
 };
 
-LiveControls& ControlsOfLive(GLFWwindow* window) {
-  return *static_cast<LiveControls*>(glfwGetWindowUserPointer(window));
+void TurnByKey(ViewMouse& mouse, int key) {
+  if (key == GLFW_KEY_LEFT) mouse.Turn({-kTurnByKey, 0});
+  if (key == GLFW_KEY_RIGHT) mouse.Turn({kTurnByKey, 0});
+  if (key == GLFW_KEY_UP) mouse.Turn({0, -kTurnByKey});
+  if (key == GLFW_KEY_DOWN) mouse.Turn({0, kTurnByKey});
+  if (key == GLFW_KEY_EQUAL || key == GLFW_KEY_KP_ADD) mouse.ZoomView(1);
+  if (key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT) mouse.ZoomView(-1);
 }
 
 void OnKey(GLFWwindow* window, int key, int, int action, int) {
+  if (action != GLFW_PRESS && action != GLFW_REPEAT) return;
+  auto& controls = static_cast<LiveControls&>(ControlsOf(window));
+  TurnByKey(controls.mouse, key);
   if (action != GLFW_PRESS) return;
-  LiveControls& controls = ControlsOfLive(window);
   render::HudOptions& hud = controls.hud;
   if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) {
     controls.pressed += static_cast<char>('A' + key - GLFW_KEY_A);
   }
-  if (key == GLFW_KEY_F) hud.forces = !hud.forces;
   if (key == GLFW_KEY_P) hud.phases = !hud.phases;
-  if (key == GLFW_KEY_O) hud.overlay_reference = !hud.overlay_reference;
   if (key == GLFW_KEY_R) hud.replay_asked = true;
   if (key == GLFW_KEY_C) hud.calibration_asked = true;
   if (key == GLFW_KEY_X) hud.calibration_end_asked = true;
   if (key == GLFW_KEY_V) hud.camera = !hud.camera;
-  if (key == GLFW_KEY_H) hud.hidden = !hud.hidden;
-  if (key == GLFW_KEY_Z) controls.mouse.orbit.Reset();
   if (key == GLFW_KEY_SPACE) hud.frozen = !hud.frozen;
-  if (key == GLFW_KEY_F11) controls.full_screen.Toggle(window);
-  if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
-}
-
-// The question mark is a letter, on whichever key the layout has it.
-void OnLetter(GLFWwindow* window, unsigned int letter) {
-  render::HudOptions& hud = ControlsOfLive(window).hud;
-  if (letter == '?') hud.keys = !hud.keys;
-}
-
-void OnLiveButton(GLFWwindow* window, int button, int action, int) {
-  if (button == GLFW_MOUSE_BUTTON_LEFT) ControlsOfLive(window).mouse.Button(action);
-}
-
-void OnLiveMove(GLFWwindow* window, double x, double y) {
-  ControlsOfLive(window).mouse.Move(window, x, y);
-}
-
-void OnLiveScroll(GLFWwindow* window, double, double notches) {
-  ControlsOfLive(window).mouse.orbit.Scroll(notches);
+  OnSharedKey(window, key);
 }
 
 void Say(scene::Model& model, const std::string& text) {
@@ -128,11 +115,32 @@ void Calibrate(render::HudOptions& hud, std::optional<PoseCalibration>& calibrat
   Say(model, "Start footing-view with --calibrate-camera FILE, the camera's file.");
 }
 
-void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
-          LiveControls& controls, std::optional<PoseCalibration>& calibration) {
+/// Sends a push that was released, and draws the arrow of the present or the last one.
+void Push(LiveControls& controls, Background& background, scene::Show::Shot& shot,
+          std::int64_t now_ns) {
+  if (const auto push = std::exchange(controls.pushed, std::nullopt)) {
+    background.SendTo(kSimulation, PushCommand(*push));
+    controls.sent = push;
+    controls.sent_ns = now_ns;
+  }
+  if (NanosecondsToSeconds(now_ns - controls.sent_ns) > kPushShownS) controls.sent.reset();
+  const auto shown = controls.mouse.push() ? controls.mouse.push() : controls.sent;
+  if (shown) scene::AddPush(shot.frame, *shown, shot.picture);
+}
+
+bool MayPush(const Options& options, const LiveControls& controls, const scene::Model& model) {
+  const scene::KeyContext context = scene::ContextOf(model, false, false);
+  return !options.subject && !controls.hud.frozen && !model.observed.calibration &&
+         scene::WhyNoPush(context).empty();
+}
+
+Result<std::optional<PlaySession>> Loop(GLFWwindow* window, const Options& options,
+                                        render::Screen& screen, LiveControls& controls,
+                                        std::optional<PoseCalibration>& calibration) {
   render::HudOptions& hud = controls.hud;
   Background background(options);
   scene::Show show;
+  PictureTimes times;
   if (options.replay_falls) show.ReplayFalls();
   const std::int64_t started_ns = clock::MonotonicNs();
   double passed_s = 0;
@@ -140,36 +148,36 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !background.stop_asked() &&
          (options.seconds <= 0 || passed_s < options.seconds)) {
     glfwPollEvents();
+    if (auto dropped = TakeDropped(options, controls)) return dropped;
     background.WantPreview(hud.camera || hud.camera_alone);
     Calibrate(hud, calibration, show.model());
     background.Drain(show, calibration ? &*calibration : nullptr);
     const std::int64_t now_ns = clock::MonotonicNs();
     if (std::exchange(hud.replay_asked, false)) show.ToggleReplay(now_ns);
     Answer(controls, options, background, show.model(), next_subject);
-    auto shot = show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference});
-    shot.picture.camera = scene::Orbited(shot.picture.camera, controls.mouse.orbit.orbit());
+    auto shot =
+        show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference, controls.mouse.followed()});
+    shot.picture.camera = scene::Orbited(shot.picture.camera, controls.mouse.orbit());
+    Push(controls, background, shot, now_ns);
     screen.set_display_scale(DisplayScale(window));
+    controls.Refresh(window);
     const PixelSize size = BeginPicture(window);
-    screen.Draw({shot.picture, show.model(), shot.frame, now_ns, shot.past, shot.past_ns}, hud,
-                size.width, size.height);
-    EndPicture(window, now_ns);
+    const render::HudContent content{shot.picture, show.model(), shot.frame,
+                                     now_ns,       shot.past,    shot.past_ns};
+    screen.Draw(content, hud, size.width, size.height);
+    const render::Box whole{{0, 0},
+                            {static_cast<float>(size.width), static_cast<float>(size.height)}};
+    controls.mouse.SetViews({ViewOf(screen, content, hud, whole)},
+                            MayPush(options, controls, show.model()));
+    EndPicture(window, now_ns, times);
     passed_s = NanosecondsToSeconds(clock::MonotonicNs() - started_ns);
   }
-  if (options.json) std::cout << Summary(show.model(), passed_s) << std::endl;
+  if (options.json) std::cout << Summary(show.model(), passed_s, times) << std::endl;
+  return std::optional<PlaySession>();
 }
 
-}  // namespace
-
-bool HasDisplay() {
-  const char* display = std::getenv("DISPLAY");
-  return display != nullptr && *display != '\0';
-}
-
-Result<void> RunWindow(const Options& options) {
-  const GlfwLibrary library;
-  const auto opened = OpenWindow(library, options);
-  if (!opened) return opened.error();
-  GLFWwindow* const window = opened->get();
+/// The live view, as PlayInWindow.
+Result<std::optional<PlaySession>> ShowLive(GLFWwindow* window, const Options& options) {
   auto screen = render::Screen::Create();
   if (!screen) return screen.error();
   auto calibration = PoseCalibration::OfOptions(options.camera.calibration_file);
@@ -185,14 +193,32 @@ Result<void> RunWindow(const Options& options) {
   hud.panels = options.look.panels;
   hud.has_subjects = !options.next_subjects.empty();
   hud.calibrates = calibration->has_value();
-  glfwSetWindowUserPointer(window, &controls);
-  glfwSetKeyCallback(window, OnKey);
-  glfwSetCharCallback(window, OnLetter);
-  glfwSetMouseButtonCallback(window, OnLiveButton);
-  glfwSetCursorPosCallback(window, OnLiveMove);
-  glfwSetScrollCallback(window, OnLiveScroll);
-  Loop(window, options, **screen, controls, *calibration);
-  return {};
+  Listen(window, controls, OnKey);
+  return Loop(window, options, **screen, controls, *calibration);
+}
+
+}  // namespace
+
+bool HasDisplay() {
+  const char* display = std::getenv("DISPLAY");
+  return display != nullptr && *display != '\0';
+}
+
+Result<void> RunWindow(const Options& options, std::optional<PlaySession> played) {
+  const GlfwLibrary library;
+  const auto opened = OpenWindow(library, options);
+  if (!opened) return opened.error();
+  const std::int64_t started_ns = clock::MonotonicNs();
+  Options left = options;
+  for (;;) {
+    auto next = played ? PlayInWindow(opened->get(), left, *played) : ShowLive(opened->get(), left);
+    if (!next) return next.error();
+    if (!*next) return {};
+    played.emplace(std::move(**next));
+    if (options.seconds <= 0) continue;
+    const double passed_s = NanosecondsToSeconds(clock::MonotonicNs() - started_ns);
+    left.seconds = std::max(1e-3, options.seconds - passed_s);
+  }
 }
 
 namespace {
@@ -301,6 +327,14 @@ Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>&
 v1::Command TPoseCommand() {
   v1::Command command;
   command.mutable_calibrate_t_pose()->set_character(1);
+  return command;
+}
+
+v1::Command PushCommand(const scene::Push& push) {
+  v1::Command command;
+  command.mutable_push()->set_character(push.character);
+  command.mutable_push()->set_impulse_x_ns(push.impulse_W_ns.x());
+  command.mutable_push()->set_impulse_y_ns(push.impulse_W_ns.y());
   return command;
 }
 

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "clients/view/app/options.h"
+#include "clients/view/app/play_session.h"
 #include "clients/view/scene/model.h"
+#include "clients/view/scene/pointer.h"
 #include "clients/view/scene/update.h"
 #include "common/base/result.h"
 #include "common/guide/set_up.h"
@@ -17,9 +19,10 @@ namespace footing::view {
 /// True when there is a display to open a window on.
 bool HasDisplay();
 
-/// The window, until it is closed, Ctrl-C or options.seconds. Fails at once, before anything is
-/// shown, when no window can be opened.
-Result<void> RunWindow(const Options& options);
+/// The window, until it is closed, Ctrl-C or options.seconds: live, or of what is `played`; a
+/// recording that is dropped on it plays from then on. Fails at once, before anything is shown,
+/// when no window can be opened.
+Result<void> RunWindow(const Options& options, std::optional<PlaySession> played);
 
 /// The item "camera" of the guided setup on the viewer's screen: the same steps as those of
 /// footing-ctl setup --only camera. The pose goes into the camera file, the result to footingd.
@@ -60,6 +63,8 @@ Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>&
 
 /// Forgets the T-pose of the first character.
 v1::Command TPoseCommand();
+/// The push on a character.
+v1::Command PushCommand(const scene::Push& push);
 /// A marker of the person at the viewer, now; `number` counts them.
 v1::Command MarkerCommand(int number);
 /// The other mode, or the mode with or without a part, as the key has it (M, L, U, B, K).

@@ -125,6 +125,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   }
   Box notes = boxes.middle;
   if (!options.title.empty()) DrawTitle(p, options.title, options.over, notes);
+  if (!options.notice.empty()) DrawTitle(p, options.notice, "", notes);
   DrawReplay(p, model, content.now_ns, notes);
   if (!options.hidden) DrawStudyPanel(p, model, content.now_ns, notes);
   const scene::CharacterPose* pose = FirstCharacter(content);
@@ -146,7 +147,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
     DrawWaiting(p, model, boxes.middle);
     DrawColumns(p, content, boxes);
   } else {
-    if (IsPerson(pose)) DrawLabels(p, content.picture, boxes, size);
+    DrawLabels(p, content.picture, boxes, size);
     DrawColumns(p, content, boxes);
     DrawNote(p, model, content.now_ns, notes);
     Box messages = boxes.middle;
@@ -159,6 +160,8 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
 
 namespace {
 
+constexpr float kKeyWidth = 104, kKeyGap = 18;  // In the list of keys, in units.
+constexpr float kKeysAround = 70;               // Its title and margins.
 constexpr double kNoteS = 3;
 constexpr double kNoteFadeS = 1;
 
@@ -239,22 +242,28 @@ void DrawWaitingLines(const Paint& p, const scene::Model& model, Box& space) {
 }
 
 void DrawKeys(const Paint& p, ImVec2 size, const std::vector<scene::KeyLine>& keys) {
-  const float s = p.scale, first = 104 * s, edge = 10 * s;
-  float width = 340 * s;
+  const float s = p.scale, edge = 10 * s, line_height = 26 * s;
+  const float first = kKeyWidth * s, most_high = size.y - 2 * edge - kKeysAround * s;
+  const auto rows = static_cast<std::size_t>(std::max(1.0f, most_high / line_height));
+  const std::size_t columns = (keys.size() + rows - 1) / rows;
+  const std::size_t each = (keys.size() + columns - 1) / columns;
+  float text = 0;
   for (const scene::KeyLine& line : keys) {
-    width = std::max(width, first + p.WidthOf(p.fonts.text, line.what) + 40 * s);
+    text = std::max(text, p.WidthOf(p.fonts.text, line.what));
   }
-  const float height = (70 + 26 * static_cast<float>(keys.size())) * s;
+  const float column = first + text + kKeyGap * s;
+  const float width = static_cast<float>(columns) * column + 26 * s;
+  const float height = kKeysAround * s + line_height * static_cast<float>(each);
   const ImVec2 low(std::max(0.0f, size.x - width - edge), std::max(0.0f, (size.y - height) / 2));
   const Box box{low, {low.x + width, low.y + height}};
   p.list->AddRectFilled(box.low, box.high, colour::kBehindKeys, 10 * s);
   const Box in = p.Panel(box);
-  p.Write(p.fonts.strong, {in.low.x + 8 * s, in.low.y + 2 * s}, colour::kText, "Keys");
-  float y = in.low.y + 36 * s;
-  for (const auto& [key, what] : keys) {
-    p.Write(p.fonts.strong, {in.low.x + 8 * s, y}, colour::kSecond, key);
-    p.Write(p.fonts.text, {in.low.x + first, y}, colour::kText, what);
-    y += 26 * s;
+  p.Write(p.fonts.strong, {in.low.x + 8 * s, in.low.y + 2 * s}, colour::kText, "Keys and mouse");
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const float x = in.low.x + static_cast<float>(i / each) * column;
+    const float y = in.low.y + 36 * s + static_cast<float>(i % each) * line_height;
+    p.Write(p.fonts.strong, {x + 8 * s, y}, colour::kSecond, keys[i].key);
+    p.Write(p.fonts.text, {x + first, y}, colour::kText, keys[i].what);
   }
 }
 
@@ -307,6 +316,8 @@ constexpr ImU32 kJumpColour = IM_COL32(178, 140, 255, 255);
 constexpr ImU32 kTransitionColour = IM_COL32(244, 130, 206, 255);
 constexpr ImU32 kTaskColour = IM_COL32(84, 226, 214, 255);
 constexpr ImU32 kMarkerColour = IM_COL32(120, 180, 255, 255);
+constexpr ImU32 kEventColour = IM_COL32(214, 224, 150, 255);
+constexpr float kNearMark = 5;  // So near the mouse points at a mark.
 
 float LanesHeight(std::size_t lanes) {
   const auto count = static_cast<float>(std::max<std::size_t>(1, lanes));
@@ -339,6 +350,9 @@ std::vector<Sign> LegendOf(const timeline::Timeline& line) {
   if (!line.tasks.empty()) signs.push_back({kTaskColour, "task done"});
   if (!line.markers.empty()) {
     signs.push_back({kMarkerColour, "marker " + std::to_string(line.markers.size())});
+  }
+  if (!line.events.empty()) {
+    signs.push_back({kEventColour, "event " + std::to_string(line.events.size())});
   }
   return signs;
 }
@@ -413,6 +427,29 @@ void DrawLane(const Paint& p, const Box& lane, const Box& groove, const timeline
     p.list->AddRectFilled({x - 0.75f * s, lane.low.y - 3 * s}, {x + 0.75f * s, lane.high.y + 3 * s},
                           kMarkerColour);
   }
+  const float middle = (lane.low.y + lane.high.y) / 2;
+  for (const timeline::EventMark& event : line.events) {
+    const float x = ColumnOf(groove, whole, event.at_s);
+    p.list->AddQuadFilled({x, middle - 5 * s}, {x + 4 * s, middle}, {x, middle + 5 * s},
+                          {x - 4 * s, middle}, kEventColour);
+  }
+}
+
+/// Text of what the mouse points at, over the bar.
+void DrawPointed(const Paint& p, const TimelineBoxes& boxes, const TimelineContent& content) {
+  const Box& groove = boxes.groove;
+  if (!p.pointer || p.pointer->y < groove.low.y - kRow * p.scale) return;
+  const float s = p.scale, x = std::clamp(p.pointer->x, groove.low.x, groove.high.x);
+  const double at_s = PositionAt(groove, content.whole, x);
+  const double within_s = PositionAt(groove, content.whole, x + kNearMark * s) - at_s;
+  const std::string text = timeline::TextAt(content.whole, at_s, within_s);
+  const float half = p.WidthOf(p.fonts.small, text) / 2 + 8 * s, height = 20 * s;
+  const float middle = std::clamp(x, half, std::max(half, boxes.bar.high.x - half));
+  const float top = boxes.bar.low.y - height - 4 * s;
+  p.list->AddLine({x, groove.low.y - 3 * s}, {x, groove.high.y + 3 * s}, colour::kFaint, s);
+  p.list->AddRectFilled({middle - half, top}, {middle + half, top + height},
+                        IM_COL32(16, 22, 30, 225), 6 * s);
+  p.WriteCentred(p.fonts.small, {middle, top + 2.5f * s}, colour::kText, text);
 }
 
 }  // namespace
@@ -487,6 +524,7 @@ void DrawTimeline(const Paint& p, const TimelineBoxes& boxes, const TimelineCont
   p.list->AddRectFilled({x - s, groove.low.y - 4 * s}, {x + s, groove.high.y + 4 * s},
                         colour::kText);
   p.list->AddCircleFilled({x, groove.low.y - 4 * s}, 5 * s, colour::kText);
+  DrawPointed(p, boxes, content);
 }
 
 }  // namespace footing::render

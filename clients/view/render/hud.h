@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,14 +29,17 @@ struct HudOptions {
   bool replay_asked = false;  ///< Key presses that wait for their action.
   bool calibration_asked = false;
   bool calibration_end_asked = false;
-  bool columns = true;        ///< The panels at both sides.
-  PanelChoice panels;         ///< Panels shown.
-  bool has_subjects = false;  ///< There are subject files for the key N.
-  bool calibrates = false;    ///< There is a camera file for the key C.
-  bool camera = false;        ///< The preview of footing-camera in a corner.
-  bool camera_alone = false;  ///< Shows the preview and nothing else.
-  std::string title;          ///< Above all else; empty: none.
-  std::string over;           ///< A word below it: "ended"; empty: none.
+  bool columns = true;            ///< The panels at both sides.
+  PanelChoice panels;             ///< Panels shown.
+  bool has_subjects = false;      ///< There are subject files for the key N.
+  bool calibrates = false;        ///< There is a camera file for the key C.
+  bool camera = false;            ///< The preview of footing-camera in a corner.
+  bool camera_alone = false;      ///< Shows the preview and nothing else.
+  std::string title;              ///< Above all else; empty: none.
+  std::string over;               ///< A word below it: "ended"; empty: none.
+  std::string notice;             ///< A line for the person at the viewer; empty: none.
+  scene::TimeWindow window;       ///< Time that the strips show.
+  std::optional<ImVec2> pointer;  ///< The mouse, pixels of the picture.
 };
 
 /// Content of the panels.
@@ -61,7 +65,8 @@ void DrawWaiting(const Paint& paint, const scene::Model& model, const Box& box);
 /// A few small lines for each connection that is not live, from the bottom of `space` upwards;
 /// takes away from `space` what they fill.
 void DrawWaitingLines(const Paint& paint, const scene::Model& model, Box& space);
-/// The list of keys, at the right: the figure in the middle stays in sight.
+/// The list of keys, at the right: the figure in the middle stays in sight. In two columns where
+/// one is too high for the picture.
 void DrawKeys(const Paint& paint, ImVec2 size, const std::vector<scene::KeyLine>& keys);
 /// Title of several recordings shown together, and their state. A banner as those below.
 void DrawTitle(const Paint& paint, const std::string& title, const std::string& over, Box& space);
@@ -98,7 +103,8 @@ double PositionAt(const Box& groove, const timeline::Timeline& whole, float colu
 /// Colour of a failure's mark.
 ImU32 ColourOf(stream::FailureCause cause);
 
-/// Position, trials with start and finish, failures coloured by kind with a legend, tasks.
+/// Position, trials with start and finish, failures coloured by kind with a legend, tasks, markers
+/// and other events; over it the text of what the mouse points at.
 void DrawTimeline(const Paint& paint, const TimelineBoxes& boxes, const TimelineContent& content);
 
 }  // namespace footing::render

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <imgui.h>
 
+#include "clients/view/scene/pointer.h"
 #include "clients/view/scene/update.h"
 #include "common/stream/device.h"
 
@@ -65,6 +67,8 @@ struct Paint {
   Fonts fonts;
   float scale = 1;
   ImTextureID camera_picture = nullptr;  ///< Texture of the preview; null: none.
+  scene::TimeWindow window = {};         ///< Time that the strips show.
+  std::optional<ImVec2> pointer = {};    ///< The mouse, pixels; nothing: nowhere over the picture.
 
   /// A dark rounded panel; returns what is left inside its margins.
   Box Panel(const Box& box) const;

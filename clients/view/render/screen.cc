@@ -107,6 +107,8 @@ void Screen::Draw(const HudContent& content, const HudOptions& options, int widt
   }
   Paint paint = BeginPanels(width, height);
   paint.camera_picture = preview_.Take(model.observed.camera.picture);
+  paint.window = options.window;
+  paint.pointer = options.pointer;
   DrawHud(paint, content, options, ImGui::GetIO().DisplaySize);
   EndPanels();
 }
@@ -170,7 +172,7 @@ void MoveDrawn(ImDrawList& list, int from, ImVec2 by) {
 
 /// The keys of playback, with those of what is played.
 std::vector<scene::KeyLine> PlayKeyLines(const std::vector<PlayedView>& views) {
-  std::vector<scene::KeyLine> lines{{"?", "show or hide this list"},
+  std::vector<scene::KeyLine> lines{{"?, F1", "show or hide this list"},
                                     {"H", "hide or show the panels"},
                                     {"F11", "full screen, or a window again"}};
   const bool person =
@@ -182,6 +184,7 @@ std::vector<scene::KeyLine> PlayKeyLines(const std::vector<PlayedView>& views) {
   }
   for (const auto& [key, what] : timeline::kPlayKeyHelp) lines.push_back({key, what});
   lines.push_back({"Esc, Q", "quit"});
+  for (scene::KeyLine& line : scene::MouseLines()) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -192,43 +195,58 @@ TimelineBoxes TimelineBoxesOf(const Screen& screen, int width, int height, std::
   return LayOutTimeline(size, screen.ScaleOf(size), lanes);
 }
 
-void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const HudOptions& options,
-                  const TimelineContent* line, int width, int height) {
-  const auto count = static_cast<int>(views.size());
+std::vector<Box> PlaybackBoxesOf(const Screen& screen, int width, int height, std::size_t count,
+                                 bool with_timeline) {
   int bar_height = 0;
-  if (line != nullptr) {
-    const Box bar = TimelineBoxesOf(screen, width, height, line->lanes.size()).bar;
+  if (with_timeline) {
+    const Box bar = TimelineBoxesOf(screen, width, height, count).bar;
     bar_height = static_cast<int>(std::ceil(bar.height()));
   }
-  const int high = std::max(1, height - bar_height);
-  const auto left_of = [&](int i) { return i * width / count; };
-  for (int i = 0; i < count; ++i) {
-    const auto& content = views[static_cast<std::size_t>(i)].content;
-    screen.world(static_cast<std::size_t>(i))
-        .Draw(content.picture, content.model.track, content.model.track_version,
-              left_of(i + 1) - left_of(i), high, left_of(i), bar_height);
+  const auto high = static_cast<float>(std::max(1, height - bar_height));
+  const auto left_of = [&](std::size_t i) {
+    return static_cast<float>(static_cast<int>(i) * width / static_cast<int>(count));
+  };
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < count; ++i)
+    boxes.push_back({{left_of(i), 0}, {left_of(i + 1), high}});
+  return boxes;
+}
+
+void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const HudOptions& options,
+                  const TimelineContent* line, int width, int height) {
+  const std::vector<Box> boxes =
+      PlaybackBoxesOf(screen, width, height, views.size(), line != nullptr);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const HudContent& content = views[i].content;
+    const auto high = static_cast<int>(boxes[i].height());
+    screen.world(i).Draw(content.picture, content.model.track, content.model.track_version,
+                         static_cast<int>(boxes[i].width()), high, static_cast<int>(boxes[i].low.x),
+                         height - high);
   }
-  const Paint paint = screen.BeginPanels(width, height);
-  for (int i = 0; i < count; ++i) {
-    const PlayedView& view = views[static_cast<std::size_t>(i)];
-    const ImVec2 size(static_cast<float>(left_of(i + 1) - left_of(i)), static_cast<float>(high));
+  Paint paint = screen.BeginPanels(width, height);
+  paint.window = options.window;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const PlayedView& view = views[i];
+    const float x = boxes[i].low.x;
     const int before = paint.list->VtxBuffer.Size;
     HudOptions shown = options;
     shown.title = view.title;
     shown.over = view.note;
     shown.keys = false;
-    DrawHud(paint, view.content, shown, size);
-    MoveDrawn(*paint.list, before, {static_cast<float>(left_of(i)), 0});
+    paint.pointer = options.pointer;
+    if (paint.pointer) paint.pointer->x -= x;
+    DrawHud(paint, view.content, shown, {boxes[i].width(), boxes[i].height()});
+    MoveDrawn(*paint.list, before, {x, 0});
     if (i == 0) continue;
-    const auto x = static_cast<float>(left_of(i));
-    paint.list->AddRectFilled({x - paint.scale, 0}, {x + paint.scale, static_cast<float>(high)},
+    paint.list->AddRectFilled({x - paint.scale, 0}, {x + paint.scale, boxes[i].high.y},
                               IM_COL32(16, 22, 30, 255));
   }
+  paint.pointer = options.pointer;
   if (line != nullptr) {
     DrawTimeline(paint, TimelineBoxesOf(screen, width, height, line->lanes.size()), *line);
   }
   if (options.keys) {
-    DrawKeys(paint, {static_cast<float>(width), static_cast<float>(high)}, PlayKeyLines(views));
+    DrawKeys(paint, {static_cast<float>(width), boxes.front().height()}, PlayKeyLines(views));
   }
   screen.EndPanels();
 }

@@ -49,6 +49,8 @@ class Screen {
   /// Panels of another making, over what is in the framebuffer: drawn between these two.
   Paint BeginPanels(int width, int height);
   void EndPanels();
+  /// Pixels per unit of the panels drawn last.
+  float scale() const { return scale_; }
   float ScaleOf(ImVec2 size) const { return ui_scale_ * HudScale(size, display_scale_); }
 
  private:
@@ -94,6 +96,9 @@ struct PlayedView {
 void DrawPlayback(Screen& screen, const std::vector<PlayedView>& views, const HudOptions& options,
                   const TimelineContent* line, int width, int height);
 
+/// Rectangles of DrawPlayback's worlds in a picture of that size, from the left.
+std::vector<Box> PlaybackBoxesOf(const Screen& screen, int width, int height, std::size_t count,
+                                 bool with_timeline);
 /// Place of DrawPlayback's timeline in a picture of that size.
 TimelineBoxes TimelineBoxesOf(const Screen& screen, int width, int height, std::size_t lanes);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,19 +37,33 @@ void ShadeMoving(const Paint& p, const Box& box, const scene::Strip& moving, std
   }
 }
 
-std::string NewestOf(const scene::Strip& strip, std::int64_t now_ns, int decimals, double factor,
-                     const char* unit) {
-  if (strip.points().empty()) return "-";
-  const scene::Strip::Point& newest = strip.points().back();
-  if (now_ns - newest.time_ns > scene::kCurrentNs) return "-";
-  return scene::Fixed(factor * static_cast<double>(newest.value), decimals) + unit;
+/// Instants of a column of plots.
+struct Instants {
+  std::int64_t now_ns = 0;                ///< End of the curves.
+  std::optional<std::int64_t> cursor_ns;  ///< Instant under the mouse.
+};
+
+/// The value at the mouse, else the newest one.
+std::string ValueOf(const scene::Strip& strip, const Instants& at, int decimals, double factor,
+                    const char* unit) {
+  const std::int64_t time_ns = at.cursor_ns.value_or(at.now_ns);
+  const auto& points = strip.points();
+  const auto after = std::upper_bound(
+      points.begin(), points.end(), time_ns,
+      [](std::int64_t ns, const scene::Strip::Point& point) { return ns < point.time_ns; });
+  // In the past a value holds up to the next point; the newest one is the present one for a while.
+  if (after == points.begin()) return "-";
+  if (after != points.end() && !after->joined) return "-";
+  const scene::Strip::Point& point = *std::prev(after);
+  if (time_ns - point.time_ns > scene::kCurrentNs) return "-";
+  return scene::Fixed(factor * static_cast<double>(point.value), decimals) + unit;
 }
 
 /// Roll and pitch, or one dash where either is unknown.
-std::string InclinationOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
+std::string InclinationOf(const scene::DeviceStrips& d, const Instants& at) {
   const double degrees = RadiansToDegrees(1);
-  const std::string roll = NewestOf(d.roll_rad, now_ns, 0, degrees, "\xc2\xb0");
-  const std::string pitch = NewestOf(d.pitch_rad, now_ns, 0, degrees, "\xc2\xb0");
+  const std::string roll = ValueOf(d.roll_rad, at, 0, degrees, "\xc2\xb0");
+  const std::string pitch = ValueOf(d.pitch_rad, at, 0, degrees, "\xc2\xb0");
   return roll == "-" || pitch == "-" ? "-" : roll + ", " + pitch;
 }
 
@@ -64,33 +80,36 @@ float RangeOf(const scene::Strip& magnitude) {
   return 62;
 }
 
-std::vector<Plot> PlotsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
+std::vector<Plot> PlotsOf(const scene::DeviceStrips& d, const Instants& at) {
   const float range_mps2 = RangeOf(d.magnitude_mps2);
+  const auto axis = [&](const scene::Strip& strip) {
+    return at.cursor_ns ? ValueOf(strip, at, 1, 1, "") : "";
+  };
   return {
-      {"acceleration",
-       NewestOf(d.magnitude_mps2, now_ns, 1, 1, " m/s\xc2\xb2"),
+      {at.cursor_ns ? "" : "acceleration",
+       ValueOf(d.magnitude_mps2, at, 1, 1, " m/s\xc2\xb2"),
        -range_mps2,
        range_mps2,
        1,
-       {{&d.filtered_x_mps2, Faded(colour::kAccent, 0.85f), "x"},
-        {&d.filtered_y_mps2, Faded(colour::kGood, 0.85f), "y"},
-        {&d.filtered_z_mps2, Faded(colour::kThird, 0.85f), "z"},
+       {{&d.filtered_x_mps2, Faded(colour::kAccent, 0.85f), "x", 1.4f, axis(d.filtered_x_mps2)},
+        {&d.filtered_y_mps2, Faded(colour::kGood, 0.85f), "y", 1.4f, axis(d.filtered_y_mps2)},
+        {&d.filtered_z_mps2, Faded(colour::kThird, 0.85f), "z", 1.4f, axis(d.filtered_z_mps2)},
         {&d.magnitude_mps2, colour::kText, "norm", 1.0f}},
        2.1f},
       {"frequency",
-       NewestOf(d.frequency_hz, now_ns, 2, 1, " Hz"),
+       ValueOf(d.frequency_hz, at, 2, 1, " Hz"),
        0,
        5,
        1,
        {{&d.frequency_hz, colour::kSecond, "", 2.0f}}},
       {"amplitude",
-       NewestOf(d.amplitude_mps2, now_ns, 1, 1, " m/s\xc2\xb2"),
+       ValueOf(d.amplitude_mps2, at, 1, 1, " m/s\xc2\xb2"),
        0,
        30,
        1,
        {{&d.amplitude_mps2, colour::kGood, "", 2.0f}}},
       {"",
-       InclinationOf(d, now_ns),
+       InclinationOf(d, at),
        static_cast<float>(-kPi / 2),
        static_cast<float>(kPi / 2),
        RadiansToDegrees(1),
@@ -100,7 +119,7 @@ std::vector<Plot> PlotsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
 }
 
 void DrawDeviceStrips(const Paint& p, const Box& box, const scene::DeviceStrips& device,
-                      std::int64_t now_ns) {
+                      const Instants& at) {
   const float s = p.scale;
   const std::string role = scene::RoleText(device.role);
   const float width = p.Write(p.fonts.strong, box.low, colour::kText, role);
@@ -111,26 +130,46 @@ void DrawDeviceStrips(const Paint& p, const Box& box, const scene::DeviceStrips&
     p.WriteRight(p.fonts.small, {box.high.x, box.low.y + 2 * s}, colour::kSecond, "SIMULATED");
   }
   const Box plots_box{{box.low.x, box.low.y + kStripHeadingHeight * s}, box.high};
-  ShadeMoving(p, plots_box, device.moving, now_ns);
-  std::vector<Plot> plots = PlotsOf(device, now_ns);
+  ShadeMoving(p, plots_box, device.moving, at.now_ns);
+  std::vector<Plot> plots = PlotsOf(device, at);
   // Where there is little space, the first plots say most.
   while (plots.size() > 1 &&
          plots_box.height() < kLeastRowHeight * s * (1 + static_cast<float>(plots.size()))) {
     plots.pop_back();
   }
-  DrawPlots(p, plots_box, plots, now_ns);
+  DrawPlots(p, plots_box, plots, at.now_ns);
 }
 
-void DrawPhase(const Paint& p, const Box& box, const scene::Strip& phase, std::int64_t now_ns) {
+void DrawPhase(const Paint& p, const Box& box, const scene::Strip& phase, const Instants& at) {
   const double degrees = RadiansToDegrees(1);
   DrawPlots(p, box,
             {{"phase, right minus left",
-              NewestOf(phase, now_ns, 0, degrees, "\xc2\xb0"),
+              ValueOf(phase, at, 0, degrees, "\xc2\xb0"),
               static_cast<float>(-kPi),
               static_cast<float>(kPi),
               degrees,
               {{&phase, colour::kSecond, "", 2.0f}}}},
-            now_ns);
+            at.now_ns);
+}
+
+bool Holds(const Box& box, ImVec2 at) {
+  return at.x >= box.low.x && at.x < box.high.x && at.y >= box.low.y && at.y < box.high.y;
+}
+
+/// A line through the whole column under the mouse, with its age; nothing beside the curves.
+std::optional<std::int64_t> DrawCursor(const Paint& p, const Box& in, std::int64_t now_ns) {
+  const float s = p.scale, x = p.pointer->x, left = in.low.x + kAxisWidth * s;
+  if (x < left || x > in.high.x) return std::nullopt;
+  const double share = static_cast<double>((in.high.x - x) / (in.high.x - left));
+  const double age_s = p.window.age_s + share * p.window.span_s;
+  p.list->AddLine({x, in.low.y + kStripHeadingHeight * s}, {x, in.high.y}, colour::kText, s);
+  const std::string text = scene::Fixed(-age_s, 2) + " s";
+  const float half = p.WidthOf(p.fonts.tiny, text) / 2 + 4 * s;
+  const float middle = std::clamp(x, left + half, in.high.x - half);
+  const float top = in.high.y - (kTimeAxisHeight - 3) * s;
+  p.list->AddRectFilled({middle - half, top}, {middle + half, in.high.y}, colour::kText, 3 * s);
+  p.WriteCentred(p.fonts.tiny, {middle, top}, IM_COL32(20, 20, 20, 255), text);
+  return now_ns - SecondsToNanoseconds(age_s);
 }
 
 float PhaseSpace(const scene::StripSet& strips) {
@@ -160,10 +199,11 @@ void DrawStripPanel(const Paint& p, const Box& box, const scene::StripSet& strip
   while (devices > 1 && StripsHeight(strips, devices, kLeastStripDeviceHeight) * s > box.height()) {
     --devices;
   }
-  const std::int64_t shown_ns = scene::ShownTime(strips.newest_ns, now_ns);
   const Box in = p.Panel(box);
   const float axis = in.high.y - (kTimeAxisHeight - 3) * s;
   DrawTimeAxis(p, {{in.low.x, axis}, in.high});
+  Instants at{scene::ShownTime(strips.newest_ns, now_ns), {}};
+  if (p.pointer && Holds(box, *p.pointer)) at.cursor_ns = DrawCursor(p, in, at.now_ns);
   const float bottom = in.high.y - kTimeAxisHeight * s;
   const float space = bottom - in.low.y - PhaseSpace(strips) * s;
   const float height = (space + kStripGap * s) / static_cast<float>(devices) - kStripGap * s;
@@ -171,11 +211,11 @@ void DrawStripPanel(const Paint& p, const Box& box, const scene::StripSet& strip
   std::size_t drawn = 0;
   for (const auto& [key, device] : strips.devices) {
     if (drawn++ == devices) break;
-    DrawDeviceStrips(p, {{in.low.x, y}, {in.high.x, y + height}}, device, shown_ns);
+    DrawDeviceStrips(p, {{in.low.x, y}, {in.high.x, y + height}}, device, at);
     y += height + kStripGap * s;
   }
   if (strips.phases_rad.empty()) return;
-  DrawPhase(p, {{in.low.x, y}, {in.high.x, bottom}}, strips.phases_rad.begin()->second, shown_ns);
+  DrawPhase(p, {{in.low.x, y}, {in.high.x, bottom}}, strips.phases_rad.begin()->second, at);
 }
 
 namespace {
@@ -183,12 +223,26 @@ namespace {
 constexpr float kSpaceForZero = 34;  // Height at which zero has a label of its own.
 constexpr float kLegendHeight = 15;
 constexpr float kLegendAboveFrom = 36;  // Height at which the words have a row of their own.
-constexpr double kGridS = 2;
-constexpr double kStripS = static_cast<double>(scene::kStripNs) * 1e-9;
+constexpr float kMostGridLines = 6;
 
 /// The part of a column's plot that holds the curves.
 Box CurvesOf(const Paint& p, const Box& box) {
   return {{box.low.x + kAxisWidth * p.scale, box.low.y}, box.high};
+}
+
+/// Column of an instant, also beside the curves.
+float ColumnOf(const Paint& p, const Box& curves, std::int64_t time_ns, std::int64_t now_ns) {
+  const double age_s = NanosecondsToSeconds(now_ns - time_ns) - p.window.age_s;
+  return curves.high.x - static_cast<float>(age_s / p.window.span_s) * curves.width();
+}
+
+/// Step of the grid, s: 1, 2 or 5 of a power of ten.
+double GridStepS(double span_s) {
+  double step_s = 0.01;
+  for (int i = 0; span_s / step_s > static_cast<double>(kMostGridLines); ++i) {
+    step_s *= i % 3 == 1 ? 2.5 : 2;
+  }
+  return step_s;
 }
 
 float YAt(const Box& curves, const Plot& plot, float value) {
@@ -200,13 +254,15 @@ void DrawCurve(const Paint& p, const Box& box, const Box& curves, const Plot& pl
                const Curve& curve, std::int64_t now_ns) {
   const auto flush = [&] { p.list->PathStroke(curve.ink, 0, curve.width * p.scale); };
   const auto& points = curve.strip->points();
+  const Box whole = CurvesOf(p, box);
+  const std::int64_t left_ns = now_ns - SecondsToNanoseconds(p.window.age_s + p.window.span_s);
   float last_x = -1e9f, last_value = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const scene::Strip::Point& point = points[i];
-    if (point.time_ns > now_ns) break;
+    if (point.time_ns > now_ns || last_x > curves.high.x) break;
     // Points that have left the strip draw no line at its edge.
-    if (points[std::min(i + 1, points.size() - 1)].time_ns <= now_ns - scene::kStripNs) continue;
-    const float x = PlotX(p, box, point.time_ns, now_ns);
+    if (points[std::min(i + 1, points.size() - 1)].time_ns <= left_ns) continue;
+    const float x = ColumnOf(p, whole, point.time_ns, now_ns);
     // A phase that wraps from pi to -pi draws no line across the strip.
     const bool wraps = std::abs(point.value - last_value) > 0.9f * (plot.high - plot.low);
     if (!point.joined || wraps) flush();
@@ -222,8 +278,11 @@ void DrawCurve(const Paint& p, const Box& box, const Box& curves, const Plot& pl
 void DrawAxes(const Paint& p, const Box& curves, const Plot& plot) {
   const float s = p.scale;
   p.list->AddRectFilled(curves.low, curves.high, IM_COL32(255, 255, 255, 10), 3 * s);
-  for (double age_s = kGridS; age_s < kStripS; age_s += kGridS) {
-    const float x = curves.high.x - static_cast<float>(age_s / kStripS) * curves.width();
+  const double step_s = GridStepS(p.window.span_s), end_s = p.window.age_s + p.window.span_s;
+  for (double age_s = step_s * std::ceil(p.window.age_s / step_s); age_s < end_s; age_s += step_s) {
+    const auto away = static_cast<float>((age_s - p.window.age_s) / p.window.span_s);
+    const float x = curves.high.x - away * curves.width();
+    if (x <= curves.low.x + 1 || x >= curves.high.x - 1) continue;
     p.list->AddLine({x, curves.low.y}, {x, curves.high.y}, IM_COL32(255, 255, 255, 16));
   }
   const auto label = [&](float value, float y) {
@@ -240,13 +299,18 @@ void DrawAxes(const Paint& p, const Box& curves, const Plot& plot) {
   }
 }
 
+/// The curve's name, with its value where the mouse is over it.
+std::string TextOf(const Curve& curve) {
+  return curve.value.empty() ? curve.name : curve.name + (" " + curve.value);
+}
+
 /// The title, in the curve's colour or followed by every curve's name in its own, and the value.
 void DrawLegend(const Paint& p, const Box& curves, const Plot& plot) {
   const float s = p.scale, line = curves.low.y + kLegendHeight * s;
   const bool one = plot.curves.size() == 1, titled = *plot.title != '\0';
   float names = titled ? 0 : -6 * s;
   if (!one) {
-    for (const Curve& curve : plot.curves) names += p.WidthOf(p.fonts.small, curve.name) + 6 * s;
+    for (const Curve& curve : plot.curves) names += p.WidthOf(p.fonts.small, TextOf(curve)) + 6 * s;
   }
   const float width = p.WidthOf(p.fonts.small, plot.title) + names + 10 * s;
   // In a low plot the words are over the curve: they stay readable, and it is seen behind them.
@@ -260,7 +324,7 @@ void DrawLegend(const Paint& p, const Box& curves, const Plot& plot) {
   for (const Curve& curve : plot.curves) {
     if (one) break;
     x += 6 * s;
-    x += p.Write(p.fonts.small, {x, curves.low.y}, curve.ink, curve.name);
+    x += p.Write(p.fonts.small, {x, curves.low.y}, curve.ink, TextOf(curve));
   }
   p.WriteRight(p.fonts.small, {curves.high.x - 5 * s, curves.low.y}, colour::kText, plot.value);
 }
@@ -280,8 +344,13 @@ void DrawPlot(const Paint& p, const Box& box, const Plot& plot, std::int64_t now
 
 float PlotX(const Paint& p, const Box& box, std::int64_t time_ns, std::int64_t now_ns) {
   const Box curves = CurvesOf(p, box);
-  const double age = static_cast<double>(now_ns - time_ns) / static_cast<double>(scene::kStripNs);
-  return curves.high.x - static_cast<float>(std::clamp(age, 0.0, 1.0)) * curves.width();
+  return std::clamp(ColumnOf(p, curves, time_ns, now_ns), curves.low.x, curves.high.x);
+}
+
+double ShareOfStrips(const Box& panel, float scale, float column) {
+  const float margin = kStripMargins / 2 * scale;
+  const float left = panel.low.x + margin + kAxisWidth * scale;
+  return static_cast<double>((column - left) / (panel.high.x - margin - left));
 }
 
 void DrawPlots(const Paint& p, const Box& box, const std::vector<Plot>& plots,
@@ -300,11 +369,15 @@ void DrawPlots(const Paint& p, const Box& box, const std::vector<Plot>& plots,
 
 void DrawTimeAxis(const Paint& p, const Box& box) {
   const Box curves = CurvesOf(p, box);
-  const auto text = [](double age_s) { return scene::Fixed(-age_s, 0) + " s"; };
-  p.Write(p.fonts.tiny, curves.low, colour::kFaint, text(kStripS));
+  const double first_s = p.window.age_s, span_s = p.window.span_s;
+  const int decimals = first_s == 0 && span_s == scene::TimeWindow::kLongestS ? 0 : 2;
+  const auto text = [decimals](double age_s) {
+    return age_s == 0 ? "0 s" : scene::Fixed(-age_s, decimals) + " s";
+  };
+  p.Write(p.fonts.tiny, curves.low, colour::kFaint, text(first_s + span_s));
   p.WriteCentred(p.fonts.tiny, {(curves.low.x + curves.high.x) / 2, curves.low.y}, colour::kFaint,
-                 text(kStripS / 2));
-  p.WriteRight(p.fonts.tiny, {curves.high.x, curves.low.y}, colour::kFaint, text(0));
+                 text(first_s + span_s / 2));
+  p.WriteRight(p.fonts.tiny, {curves.high.x, curves.low.y}, colour::kFaint, text(first_s));
 }
 
 }  // namespace footing::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "clients/view/scene/text.h"
 #include "common/base/text.h"
@@ -36,7 +37,7 @@ constexpr double kHighestEyeRad = DegreesToRadians(80);
 constexpr double kLowestEyeM = 0.6;  // Below the pivot, which is at the hips.
 constexpr double kNotch = 1.12;
 constexpr double kNearest = 0.25, kFarthest = 6;
-constexpr double kDoubleClickS = 0.3, kDoubleClickAway = 0.01;
+constexpr double kMostShift = 1.5;  // In heights of the picture.
 
 }  // namespace
 
@@ -154,25 +155,34 @@ Camera Orbited(const Camera& camera, const Orbit& orbit) {
   Camera turned = camera;
   turned.eye_m = pivot_m + turn * (orbit.distance * eye_m);
   turned.target_m = pivot_m + turn * (orbit.distance * (camera.target_m - pivot_m));
+  const Eigen::Matrix3d axes = turned.View().topLeftCorner<3, 3>().cast<double>();
+  const double height_m = 2 * distance_m * std::tan(camera.vertical_field_rad / 2);
+  // The picture goes to the right when the eye goes to the left.
+  Eigen::Vector3d moved_m =
+      height_m * (orbit.shift.y() * axes.row(1) - orbit.shift.x() * axes.row(0)).transpose();
+  const double lowest_m = std::min(turned.eye_m.z(), pivot_m.z() - kLowestEyeM);
+  moved_m.z() = std::max(moved_m.z(), lowest_m - turned.eye_m.z());
+  turned.eye_m += moved_m;
+  turned.target_m += moved_m;
   return turned;
 }
 
-void MouseOrbit::Press(const Eigen::Vector2d& at, double time_s) {
-  const bool again = pressed_s_ && time_s - *pressed_s_ <= kDoubleClickS &&
-                     (at - pressed_).norm() <= kDoubleClickAway;
-  if (again) Reset();
-  pressed_s_ = again ? std::nullopt : std::optional(time_s);
-  pressed_ = last_ = at;
-  dragging_ = !again;
+void MouseOrbit::Begin(Drag drag, const Eigen::Vector2d& at) {
+  drag_ = drag;
+  last_ = at;
 }
 
 void MouseOrbit::Move(const Eigen::Vector2d& at) {
-  if (!dragging_) return;
-  const Eigen::Vector2d moved = at - last_;
-  last_ = at;
-  // The world follows the hand: to the right, the eye goes to the left around it.
-  orbit_.azimuth_rad = WrapAngle(orbit_.azimuth_rad - kDragRad * moved.x());
-  orbit_.elevation_rad = std::clamp(orbit_.elevation_rad + kDragRad * moved.y(), -kPi / 2, kPi / 2);
+  const Eigen::Vector2d by = at - std::exchange(last_, at);
+  if (drag_ == Drag::kTurn) Turn(by);
+  if (drag_ != Drag::kShift) return;
+  orbit_.shift = (orbit_.shift + by).cwiseMax(-kMostShift).cwiseMin(kMostShift);
+}
+
+// The world follows the hand: to the right, the eye goes to the left around it.
+void MouseOrbit::Turn(const Eigen::Vector2d& by) {
+  orbit_.azimuth_rad = WrapAngle(orbit_.azimuth_rad - kDragRad * by.x());
+  orbit_.elevation_rad = std::clamp(orbit_.elevation_rad + kDragRad * by.y(), -kPi / 2, kPi / 2);
 }
 
 void MouseOrbit::Scroll(double notches) {

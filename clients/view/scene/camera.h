@@ -77,25 +77,30 @@ class FrontCamera {
   double distance_m_ = 0;
 };
 
-/// Turn and zoom of the view by a person with the mouse; at first none.
+/// Turn, zoom and shift of the view by a person with the mouse; at first none.
 struct Orbit {
   double azimuth_rad = 0;    ///< Angle of the eye around the pivot, counter-clockwise from above.
   double elevation_rad = 0;  ///< Elevation of the eye, upwards.
   double distance = 1;       ///< Factor of the eye's distance from the pivot.
+  /// Place of the pivot less its place without a shift, in heights of the picture, y down.
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
 };
 
-/// The view turned around its pivot, which stays where it is in the picture. The eye stays above
-/// the ground and never quite overhead.
+/// The view turned around its pivot, which goes in the picture only by the shift. The eye stays
+/// above the ground and never quite overhead.
 Camera Orbited(const Camera& camera, const Orbit& orbit);
 
-/// Turns presses, moves and the wheel of a mouse into an orbit. Positions are in heights of the
+/// Turns drags and the wheel of a mouse, and keys, into an orbit. Positions are in heights of the
 /// picture, y down.
 class MouseOrbit {
  public:
-  /// A press of the left button; the second one within 0.3 s at one place resets the view.
-  void Press(const Eigen::Vector2d& at, double time_s);
-  void Release() { dragging_ = false; }
+  enum class Drag { kNone, kTurn, kShift };
+
+  void Begin(Drag drag, const Eigen::Vector2d& at);
+  void End() { drag_ = Drag::kNone; }
   void Move(const Eigen::Vector2d& at);
+  /// Turns as a drag by that many heights of the picture.
+  void Turn(const Eigen::Vector2d& by);
   /// Notches of the wheel, positive away from the person: nearer.
   void Scroll(double notches);
   void Reset() { orbit_ = {}; }
@@ -103,10 +108,8 @@ class MouseOrbit {
 
  private:
   Orbit orbit_;
-  bool dragging_ = false;
+  Drag drag_ = Drag::kNone;
   Eigen::Vector2d last_ = Eigen::Vector2d::Zero();
-  std::optional<double> pressed_s_;
-  Eigen::Vector2d pressed_ = Eigen::Vector2d::Zero();
 };
 
 /// Position of a second figure relative to the first, W: on the floor, not on boards.

@@ -597,10 +597,10 @@ struct LiveKey {
 };
 
 constexpr std::array<LiveKey, 21> kLiveKeys{{
-    {"?", "show or hide this list", Of::kAll},
+    {"?, F1", "show or hide this list", Of::kAll},
     {"H", "hide or show the panels", Of::kAll},
     {"F11", "full screen, or a window again", Of::kAll},
-    {"mouse", "drag to turn the view, wheel to zoom", Of::kAll},
+    {"arrows", "turn the view; + and - zoom", Of::kAll},
     {"Z", "the view from behind again; also a double click", Of::kBiped},
     {"Z", "the view from the front again; also a double click", Of::kPerson},
     {"F", "force arrows at the feet", Of::kBiped},
@@ -688,7 +688,23 @@ std::vector<KeyLine> LiveKeyLines(const KeyContext& context) {
     if (shown) lines.push_back({key.key, key.what});
   }
   lines.push_back({"Esc, Q", "quit"});
+  for (KeyLine& line : MouseLines()) lines.push_back(std::move(line));
+  if (WhyNoPush(context).empty()) lines.push_back({"", "drag the character to push it"});
   return lines;
+}
+
+std::vector<KeyLine> MouseLines() {
+  return {{"mouse", "drag to turn the view, wheel to zoom"},
+          {"", "right or middle button to shift the view"},
+          {"", "double click on a character to follow it"},
+          {"", "strips: wheel to zoom in, drag to go back"},
+          {"", "drop a recording here to play it"}};
+}
+
+std::string WhyNoPush(const KeyContext& context) {
+  if (context.engine != Engine::kBiped) return "only the biped can be pushed";
+  if (!context.may_command) return "works only on the machine where footing-sim runs";
+  return "";
 }
 
 std::string WhyNoKey(char letter, const KeyContext& context) {

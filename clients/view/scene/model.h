@@ -301,8 +301,14 @@ struct KeyLine {
   std::string what;
 };
 
-/// The keys of a live view that do something now, in the order of the list.
+/// The keys of a live view that do something now, in the order of the list, and what the mouse
+/// does.
 std::vector<KeyLine> LiveKeyLines(const KeyContext& context);
+/// Lines of the mouse, which is the same in every view.
+std::vector<KeyLine> MouseLines();
+
+/// Why a drag on the character turns the view and does not push; empty where it pushes.
+std::string WhyNoPush(const KeyContext& context);
 
 /// Whether the key changes the mode of the pose engine (M), or leaves a part of it out or in.
 bool ChangesMode(char key);

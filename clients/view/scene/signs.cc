@@ -30,17 +30,6 @@ const Colour kMomentumColour = Rgb(0x35d07f);
 const Colour kAngularColour = Rgb(0xc77dff);
 const Colour kTotalColour = Rgb(0xff5d73);
 
-void AddArrow(const Vector3f& from, const Vector3f& to, float radius_m, const Colour& colour,
-              PartList& parts) {
-  const Vector3f along = to - from;
-  const float length = along.norm();
-  const float head = std::min(5 * radius_m, 0.6f * length);
-  if (length < 1e-4f) return;
-  const Vector3f neck = to - head / length * along;
-  parts.AddRod(from, neck, radius_m, radius_m, colour, 0.2f);
-  parts.AddRod(neck, to, 2.4f * radius_m, 0.001f, colour, 0.2f);
-}
-
 void AddForces(const CharacterPose& pose, BodySigns& signs) {
   Vector3f moment = Vector3f::Zero();
   double total_n = 0;
@@ -126,6 +115,17 @@ void AddEllipses(const BodyState& body, BodySigns& signs) {
 }
 
 }  // namespace
+
+void AddArrow(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float radius_m,
+              const Colour& colour, PartList& parts) {
+  const Eigen::Vector3f along = to - from;
+  const float length = along.norm();
+  const float head = std::min(5 * radius_m, 0.6f * length);
+  if (length < 1e-4f) return;
+  const Eigen::Vector3f neck = to - head / length * along;
+  parts.AddRod(from, neck, radius_m, radius_m, colour, 0.2f);
+  parts.AddRod(neck, to, 2.4f * radius_m, 0.001f, colour, 0.2f);
+}
 
 void ComTrail::Add(double time_s, const Eigen::Vector3d& com_m) {
   if (!points.empty() && time_s < points.back().time_s) points.clear();

@@ -47,6 +47,10 @@ Eigen::Vector2f FootEllipse(const BodyFoot& foot);
 /// angular momentum, and how certain the places of the feet are.
 void AddBodySigns(const CharacterPose& pose, const ComTrail& trail, BodySigns& signs);
 
+/// Adds an arrow; nothing where it has no length.
+void AddArrow(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float radius_m,
+              const Colour& colour, PartList& parts);
+
 /// Normal force of the ground for an arrow of 1 m.
 inline constexpr double kForcePerMetreN = 600;
 

@@ -126,13 +126,14 @@ Picture Stage::Advance(const Model& model, const WorldFrame& frame, std::int64_t
   Subject subject;
   subject.position_m.z() = kEmptyHipHeightM;
   double roll_rad = 0;
-  bool first = true;
+  bool none = true;
   for (const CharacterPose& pose : frame.characters) {
     if (!pose.valid) continue;
     AddCharacter(model, pose, dt_s, options, picture);
-    if (first) subject = SubjectOf(model, pose);
-    if (first) roll_rad = pose.interface.view_roll_rad;
-    first = false;
+    if (!none && pose.character != options.followed) continue;
+    subject = SubjectOf(model, pose);
+    roll_rad = pose.interface.view_roll_rad;
+    none = false;
   }
   AddGhostSegment(model.game, picture.ghosts);
   camera_.Advance(subject, dt_s);

@@ -55,6 +55,8 @@ struct Picture {
 struct StageOptions {
   bool forces = false;
   bool overlay_reference = false;  ///< Over the figure in place of beside it.
+  /// Character that the camera follows; where it is not there, the first one.
+  std::uint32_t followed = 0;
 };
 
 /// Turns frames into pictures; keeps what is filtered over time.

@@ -54,6 +54,7 @@ Timeline Shifted(Timeline timeline, double zero_s) {
   for (FailureMark& failure : timeline.failures) failure.at_s -= zero_s;
   for (TaskMark& task : timeline.tasks) task.at_s -= zero_s;
   for (MarkerMark& marker : timeline.markers) marker.at_s -= zero_s;
+  for (EventMark& event : timeline.events) event.at_s -= zero_s;
   for (TrialMark& trial : timeline.trials) {
     trial.begin_s -= zero_s;
     if (trial.start_s) *trial.start_s -= zero_s;
@@ -88,17 +89,32 @@ std::vector<TrialMark> TrialsOf(const std::vector<MarkerMark>& markers) {
   return trials;
 }
 
+namespace {
+
+/// Positions that the keys for failures go to, sorted.
+std::vector<double> StopsOf(const Timeline& timeline) {
+  std::vector<double> stops_s;
+  for (const FailureMark& failure : timeline.failures) stops_s.push_back(failure.at_s);
+  if (!stops_s.empty()) return stops_s;
+  for (const EventMark& event : timeline.events) stops_s.push_back(event.at_s);
+  for (const MarkerMark& marker : timeline.markers) stops_s.push_back(marker.at_s);
+  std::sort(stops_s.begin(), stops_s.end());
+  return stops_s;
+}
+
+}  // namespace
+
 std::optional<double> NextFailure(const Timeline& timeline, double at_s) {
-  for (const FailureMark& failure : timeline.failures) {
-    if (failure.at_s > at_s + kSameS) return failure.at_s;
+  for (const double stop_s : StopsOf(timeline)) {
+    if (stop_s > at_s + kSameS) return stop_s;
   }
   return std::nullopt;
 }
 
 std::optional<double> PreviousFailure(const Timeline& timeline, double at_s) {
   std::optional<double> found;
-  for (const FailureMark& failure : timeline.failures) {
-    if (failure.at_s < at_s - kSameS) found = failure.at_s;
+  for (const double stop_s : StopsOf(timeline)) {
+    if (stop_s < at_s - kSameS) found = stop_s;
   }
   return found;
 }
@@ -158,6 +174,9 @@ Timeline Only(const Timeline& timeline, const TrialMark& trial) {
   }
   for (const MarkerMark& marker : timeline.markers) {
     if (within(marker.at_s)) only.markers.push_back(marker);
+  }
+  for (const EventMark& event : timeline.events) {
+    if (within(event.at_s)) only.events.push_back(event);
   }
   return only;
 }
@@ -313,6 +332,7 @@ Timeline Joined(const Timeline& first, const Timeline& second) {
   joined.failures = Merged(first.failures, second.failures, earlier);
   joined.tasks = Merged(first.tasks, second.tasks, earlier);
   joined.markers = Merged(first.markers, second.markers, earlier);
+  joined.events = Merged(first.events, second.events, earlier);
   joined.trials = Merged(first.trials, second.trials, [](const TrialMark& a, const TrialMark& b) {
     return a.begin_s < b.begin_s;
   });
@@ -369,8 +389,8 @@ std::string StateText(const SideState& state) {
   return state.before ? "not begun" : "";
 }
 
-std::vector<std::string> MarkLines(const Timeline& timeline) {
-  std::vector<std::pair<double, std::string>> marks;
+std::vector<MarkText> MarkTexts(const Timeline& timeline) {
+  std::vector<MarkText> marks;
   for (const TrialMark& trial : timeline.trials) {
     const std::string name = trial.id.empty() ? NameOf(trial) : "trial " + trial.id;
     marks.emplace_back(trial.begin_s,
@@ -392,11 +412,29 @@ std::vector<std::string> MarkLines(const Timeline& timeline) {
                        "marker: " + marker.text +
                            (marker.value ? " (" + text::Shortest(*marker.value) + ")" : ""));
   }
+  for (const EventMark& event : timeline.events) marks.emplace_back(event.at_s, event.text);
   std::stable_sort(marks.begin(), marks.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  return marks;
+}
+
+std::vector<std::string> MarkLines(const Timeline& timeline) {
   std::vector<std::string> lines;
-  for (const auto& [at_s, what] : marks) lines.push_back(ClockText(at_s) + "  " + what);
+  for (const auto& [at_s, what] : MarkTexts(timeline)) {
+    lines.push_back(ClockText(at_s) + "  " + what);
+  }
   return lines;
+}
+
+std::string TextAt(const Timeline& timeline, double at_s, double within_s) {
+  const MarkText* nearest = nullptr;
+  const std::vector<MarkText> marks = MarkTexts(timeline);
+  for (const MarkText& mark : marks) {
+    const double away_s = std::abs(mark.first - at_s);
+    if (away_s > within_s) continue;
+    if (nearest == nullptr || away_s < std::abs(nearest->first - at_s)) nearest = &mark;
+  }
+  return nearest == nullptr ? ClockText(at_s) : ClockText(nearest->first) + "  " + nearest->second;
 }
 
 }  // namespace footing::timeline

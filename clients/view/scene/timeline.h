@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/base/result.h"
@@ -37,6 +38,12 @@ struct MarkerMark {
   std::optional<double> value;
 };
 
+/// Something else happened that a person should read: a device lost or back, a T-pose taken, ...
+struct EventMark {
+  double at_s = 0;
+  std::string text;
+};
+
 /// One trial, from when it was made ready to its end.
 struct TrialMark {
   std::string id;            ///< Empty: nobody gave it one.
@@ -50,7 +57,7 @@ struct TrialMark {
   double time_s = 0;                                      ///< Its clock then.
 };
 
-/// Trials, failures, tasks and markers of a recording, s from its zero.
+/// Trials, failures, tasks, markers and other events of a recording, s from its zero.
 struct Timeline {
   double begin_s = 0;
   double end_s = 0;
@@ -58,6 +65,7 @@ struct Timeline {
   std::vector<FailureMark> failures;
   std::vector<TaskMark> tasks;
   std::vector<MarkerMark> markers;
+  std::vector<EventMark> events;
 
   double length_s() const { return end_s - begin_s; }
 };
@@ -73,8 +81,9 @@ inline constexpr std::size_t kMostMarks = 100'000;
 /// Timeline seen from another zero: every position less `zero_s`.
 Timeline Shifted(Timeline timeline, double zero_s);
 
-/// The first failure behind a position, or the last one before it; withdrawn ones count too.
-/// Nothing when there is none. Marks within 1 ms of the position are not behind or before it.
+/// The first failure behind a position, or the last one before it; withdrawn ones count too. In a
+/// recording without failures, of its markers and other events. Nothing when there is none. Marks
+/// within 1 ms of the position are not behind or before it.
 std::optional<double> NextFailure(const Timeline& timeline, double at_s);
 std::optional<double> PreviousFailure(const Timeline& timeline, double at_s);
 /// The beginning of the first trial behind a position; after the last one, of the first of all.
@@ -167,17 +176,16 @@ inline constexpr std::array<PlayKey, 15> kPlayKeys{{
 }};
 
 /// Lines for the list of keys: the keys and what they do.
-inline constexpr std::array<std::array<const char*, 2>, 11> kPlayKeyHelp{{
+inline constexpr std::array<std::array<const char*, 2>, 10> kPlayKeyHelp{{
     {"space", "pause or continue"},
     {"left, right", "1 s back, 1 s forward"},
     {", and .", "one frame back, one forward"},
     {"up, down", "faster, slower: 0.1 to 8; also + and -"},
-    {"N, P", "next failure, previous failure"},
+    {"N, P", "next, previous failure; else event"},
     {"T", "the next trial"},
     {"Home, End", "the beginning, the end"},
     {"L", "show or hide the timeline"},
-    {"mouse", "click or drag on the timeline"},
-    {"", "drag above it to turn the view, wheel to zoom"},
+    {"timeline", "click or drag on it to seek"},
     {"Z", "the first view again; also a double click"},
 }};
 
@@ -234,7 +242,14 @@ std::string TrialText(const Timeline& timeline, double at_s);
 /// "ended", "not begun", or empty while it plays.
 std::string StateText(const SideState& state);
 
+/// A mark's position and its text.
+using MarkText = std::pair<double, std::string>;
+/// All marks as text, by time.
+std::vector<MarkText> MarkTexts(const Timeline& timeline);
 /// One line a mark, by time, as a terminal shows them.
 std::vector<std::string> MarkLines(const Timeline& timeline);
+/// The mark nearest to a position, at most `within_s` away: "0:12.3  T-pose taken: 71.2 kg"; the
+/// position alone where there is none.
+std::string TextAt(const Timeline& timeline, double at_s, double within_s);
 
 }  // namespace footing::timeline

@@ -151,21 +151,44 @@ TEST(Orbit, TheEyeStaysOverTheGroundAndIsNeverOverhead) {
   EXPECT_GT(high.eye_m.z(), 5);
 }
 
-TEST(MouseOrbit, ADragTurnsAndADoubleClickResets) {
+TEST(Orbit, AShiftMovesThePivotInThePictureByThatMuchAtEveryZoomAndTurn) {
+  for (const double azimuth_rad : {0.0, 1.1}) {
+    for (const double distance : {0.5, 2.0}) {
+      Orbit orbit{.azimuth_rad = azimuth_rad, .elevation_rad = 0.3, .distance = distance};
+      const Eigen::Vector4f before = Clip(Orbited(Behind(), orbit), *Behind().pivot_m);
+      orbit.shift = {0.2, 0.1};
+      const Eigen::Vector4f after = Clip(Orbited(Behind(), orbit), *Behind().pivot_m);
+      // Clip space is 2 high and 2 * 16 / 9 wide, y up.
+      EXPECT_NEAR(after.x() / after.w() - before.x() / before.w(), 0.2 * 2 * 9 / 16, 0.03);
+      EXPECT_NEAR(after.y() / after.w() - before.y() / before.w(), -0.1 * 2, 0.03);
+    }
+  }
+}
+
+TEST(Orbit, AShiftUpwardsDoesNotTakeTheEyeUnderTheGround) {
+  const Camera low = Orbited(Behind(), {.elevation_rad = -0.4, .shift = {0, -1.5}});
+  EXPECT_GT(low.eye_m.z(), 0.3);
+}
+
+TEST(MouseOrbit, ADragTurnsOrShiftsAndEnds) {
+  using Drag = MouseOrbit::Drag;
   MouseOrbit mouse;
-  mouse.Move({0.5, 0.5});  // Without a press nothing turns.
+  mouse.Move({0.5, 0.5});  // Before a drag begins nothing turns.
   EXPECT_EQ(mouse.orbit().azimuth_rad, 0);
-  mouse.Press({0.5, 0.5}, 1);
+  mouse.Begin(Drag::kTurn, {0.5, 0.5});
   mouse.Move({0.6, 0.55});
-  mouse.Release();
   EXPECT_NEAR(mouse.orbit().azimuth_rad, -0.1 * kPi, 1e-12);
   EXPECT_NEAR(mouse.orbit().elevation_rad, 0.05 * kPi, 1e-12);
-  mouse.Press({0.6, 0.55}, 5);
-  mouse.Release();
-  mouse.Press({0.6, 0.55}, 5.2);
-  EXPECT_EQ(mouse.orbit().azimuth_rad, 0);
+  mouse.End();
   mouse.Move({0.9, 0.9});
-  EXPECT_EQ(mouse.orbit().azimuth_rad, 0) << "the second press begins no drag";
+  EXPECT_NEAR(mouse.orbit().azimuth_rad, -0.1 * kPi, 1e-12);
+  mouse.Begin(Drag::kShift, {0.5, 0.5});
+  mouse.Move({0.4, 0.8});
+  EXPECT_NEAR((mouse.orbit().shift - Eigen::Vector2d(-0.1, 0.3)).norm(), 0, 1e-12);
+  mouse.Move({-50, 0.8});
+  EXPECT_GE(mouse.orbit().shift.x(), -2);
+  mouse.Reset();
+  EXPECT_EQ(mouse.orbit().shift.norm(), 0);
 }
 
 TEST(MouseOrbit, TheWheelGoesNearerAndBackWithinLimits) {

@@ -110,6 +110,28 @@ TEST_F(PlayPictureTest, EveryFailureStandsInTheTimelineInItsColour) {
   }
 }
 
+TEST_F(PlayPictureTest, AnEventIsMarkedAndTheMouseOverItSaysWhatItIs) {
+  timeline::Timeline line = SampleLine();
+  line.events = {{2, "T-pose taken: 71.2 kg"}};
+  const TimelineContent content{line, {&line}, timeline::HeadAt(-2, 38, 1), ""};
+  HudOptions options;
+  const Image without = Played({View()}, options, &content, "event");
+  const TimelineBoxes boxes = TimelineBoxesOf(*screen_, kWidth, kHeight, 1);
+  const float x = ColumnOf(boxes.groove, line, 2);
+  const float middle = (boxes.groove.low.y + boxes.groove.high.y) / 2;
+  const auto [red, green, blue] = PixelAt(without, x, middle);
+  EXPECT_GT(red, 180);
+  EXPECT_GT(green, 180);
+  EXPECT_LT(blue, 180);
+  options.pointer = ImVec2(x + 2, middle);
+  const Image with = Played({View()}, options, &content, "event_pointed");
+  const auto letters = [](int r, int g, int b) { return std::min({r, g, b}) > 200; };
+  const double top = static_cast<double>(boxes.bar.low.y) - 24, share = 0.1;
+  const Region over{std::max(0.0, x / kWidth - share), x / kWidth + share, top / kHeight,
+                    (top + 20) / kHeight};
+  EXPECT_GT(ShareOf(with, letters, over), ShareOf(without, letters, over) + 0.012);
+}
+
 TEST_F(PlayPictureTest, PositionsAndColumnsOfTheTimelineAgree) {
   const timeline::Timeline line = SampleLine();
   const Box groove = LayOutTimeline({1280, 720}, 1, 1).groove;

@@ -134,13 +134,24 @@ TEST_F(ProgramTest, ARecordingDoesNotOverwriteAnother) {
   EXPECT_EQ(std::filesystem::file_size(to + "/000007.png"), 4u);
 }
 
-TEST_F(ProgramTest, AFilmNeedsAnEncoderAndIsNoFolder) {
-  const std::string film = File("walk.mp4");
+TEST_F(ProgramTest, WithoutAnEncoderAFilmIsAFolderOfPictures) {
+  const std::string film = File("walk.mp4"), folder = File("walk");
   const std::string words = "--record " + film + " --seconds 0.5 --width 320 --height 180";
   const Outcome without = RunCommand("PATH=/nowhere " + View(words) + " 2>&1");
-  EXPECT_EQ(without.code, 2);
+  EXPECT_EQ(without.code, 0) << without.output;
+  EXPECT_THAT(without.output, HasSubstr("no ffmpeg or GStreamer"));
   EXPECT_THAT(without.output, HasSubstr("apt install ffmpeg"));
+  EXPECT_THAT(without.output, HasSubstr("wrote 5 pictures to " + folder));
   EXPECT_FALSE(std::filesystem::exists(film));
+  EXPECT_TRUE(std::filesystem::exists(folder + "/000004.png"));
+  const Outcome again = RunCommand("PATH=/nowhere " + View(words) + " 2>&1");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.output, HasSubstr("has pictures already"));
+}
+
+TEST_F(ProgramTest, AFilmIsMadeByTheEncoderAndOverwritesNone) {
+  const std::string film = File("walk.mp4");
+  const std::string words = "--record " + film + " --seconds 0.5 --width 320 --height 180";
   // An encoder that takes raw pictures on its standard input and names the film last.
   const std::string folder = File("encoder");
   std::filesystem::create_directories(folder);
@@ -152,6 +163,35 @@ TEST_F(ProgramTest, AFilmNeedsAnEncoderAndIsNoFolder) {
   const Outcome again = RunCommand("PATH=" + folder + ":/usr/bin:/bin " + View(words) + " 2>&1");
   EXPECT_EQ(again.code, 2);
   EXPECT_THAT(again.output, HasSubstr("there is such a file already"));
+}
+
+TEST_F(ProgramTest, InstalledEncodersMakeFilmsThatBeginAsTheirFormatsDo) {
+  const bool ffmpeg = std::system("command -v ffmpeg >/dev/null 2>&1") == 0;
+  const bool gstreamer =
+      std::system(
+          "gst-inspect-1.0 --exists x264enc && gst-inspect-1.0 --exists mp4mux && "
+          "command -v gst-launch-1.0 >/dev/null") == 0;
+  if (!ffmpeg && !gstreamer) {
+    GTEST_SKIP() << "no encoder is installed (apt install ffmpeg)";
+  }
+  // Only the programs of one encoder are on the PATH. An odd size is padded.
+  const auto film_by = [this](const std::string& name, const std::string& programs) {
+    const std::string folder = File(name.c_str()), film = folder + "/walk.mp4";
+    std::filesystem::create_directories(folder);
+    const Outcome done =
+        RunCommand("for one in " + programs + "; do ln -s $(command -v $one) " + folder +
+                   "/; done; PATH=" + folder + " " +
+                   View("--record " + film + " --seconds 0.5 --width 321 --height 181") + " 2>&1");
+    EXPECT_EQ(done.code, 0) << done.output;
+    std::ifstream file(film, std::ios::binary);
+    std::array<char, 8> head{};
+    file.read(head.data(), head.size());
+    // ISO 14496-12, 4.3: a size of 32 bits, then the type of the first box.
+    EXPECT_EQ(std::string(head.data() + 4, 4), "ftyp") << name << ": " << done.output;
+    EXPECT_GT(std::filesystem::file_size(film), 1000u);
+  };
+  if (ffmpeg) film_by("by_ffmpeg", "ffmpeg");
+  if (gstreamer) film_by("by_gstreamer", "gst-inspect-1.0 gst-launch-1.0");
 }
 
 TEST_F(ProgramTest, AScreenshotIsWhatItsNameSays) {

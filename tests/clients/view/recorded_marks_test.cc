@@ -96,6 +96,33 @@ TEST_F(RecordedMarksTest, MarkersOfBothServersAreMarksAndFrameATrial) {
   EXPECT_TRUE(std::is_sorted(marks->notes_ns.begin(), marks->notes_ns.end()));
 }
 
+TEST_F(RecordedMarksTest, WhatElseAPersonShouldReadIsAnEvent) {
+  v1::Events events;
+  const auto add = [&events](v1::Event::Kind kind, double at_s, const std::string& text) {
+    v1::Event& event = *events.add_events();
+    event.set_kind(kind);
+    event.set_host_ns(RoundToNanoseconds(at_s));
+    event.set_text(text);
+  };
+  // As a recording of a person has them; the last four are no marks.
+  add(v1::Event::KIND_STREAM_BACK, 2, "both boards are there");
+  add(v1::Event::KIND_COMMAND, 9, "T-pose taken: 71.2 kg");
+  add(v1::Event::KIND_STREAM_LOST, 7, "a board is lost: the pose coasts");
+  add(v1::Event::KIND_GAIT_CHANGED, 3, "gait changed: run to walk");
+  add(v1::Event::KIND_RESPONSE, 3, "response");
+  add(v1::Event::KIND_PUT_BACK, 4, "put back");
+  add(v1::Event::KIND_COMMAND, 4, "");
+  Write("events", events, 1);
+  const timeline::Timeline line = Read();
+  ASSERT_EQ(line.events.size(), 3u);
+  EXPECT_DOUBLE_EQ(line.events[0].at_s, 1);  // From the first tick, at 1 s.
+  EXPECT_EQ(line.events[1].text, "a board is lost: the pose coasts");
+  EXPECT_EQ(line.events[2].text, "T-pose taken: 71.2 kg");
+  // Without failures the keys for them go to these.
+  EXPECT_DOUBLE_EQ(timeline::NextFailure(line, 1).value_or(0), 6);
+  EXPECT_DOUBLE_EQ(timeline::PreviousFailure(line, 8).value_or(0), 6);
+}
+
 TEST_F(RecordedMarksTest, ARestartedServerBeginsAnotherTrialOfTheSameName) {
   Trial(0, "p07", TrialPhase::kReady);
   Trial(2, "p07", TrialPhase::kRunning);

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "tests/clients/view/made_stream.h"
 #include "tests/clients/view/picture_fixture.h"
@@ -65,6 +67,50 @@ TEST_F(StripPictureTest, StripsHaveLabelsBesideAndUnderThem) {
             0.01);
   EXPECT_GT(share(strips.low.x + 44, strips.high.x - 14, strips.high.y - 26, strips.high.y - 13),
             0.01);
+}
+
+TEST_F(StripPictureTest, TheMouseOverTheStripsReadsTheirValuesThere) {
+  const scene::made::Wish wish;
+  const scene::Model model = scene::made::ModelAfter(12, wish);
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  HudOptions options;
+  const HudBoxes boxes =
+      BoxesOf({picture, model, frame, now_ns, model, now_ns}, options, {kWidth, kHeight}, 1);
+  ASSERT_TRUE(boxes.strips);
+  const Box& strips = *boxes.strips;
+  const float column = strips.low.x + 0.6f * strips.width(), row = strips.low.y + 100;
+  // Column and its neighbour in a row of pixels between two plots: the line alone is there.
+  const auto is_line = [&](const Image& image, float x) {
+    int bright = 0;
+    for (int y = static_cast<int>(strips.low.y) + 40; y < static_cast<int>(strips.high.y) - 40;
+         ++y) {
+      const auto i = static_cast<std::size_t>(3 * (y * image.width + static_cast<int>(x)));
+      bright += std::min({image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]}) > 150 ? 1 : 0;
+    }
+    return bright > 0.7f * (strips.height() - 80);
+  };
+  const Image without = Show(picture, model, frame, now_ns, options, "strips_plain");
+  EXPECT_FALSE(is_line(without, column));
+  options.pointer = ImVec2(column, row);
+  const Image with = Show(picture, model, frame, now_ns, options, "strips_read");
+  EXPECT_TRUE(is_line(with, column) || is_line(with, column - 1));
+  // Zoomed in, the curves are other ones; the panels beside them are not.
+  options.pointer.reset();
+  options.window = scene::Zoomed({}, 8, 0.5);
+  const Image zoomed = Show(picture, model, frame, now_ns, options, "strips_zoomed");
+  EXPECT_NE(zoomed.rgb, without.rgb);
+  const auto right_half = [](const Image& image) {
+    std::vector<std::uint8_t> pixels;
+    for (int y = 0; y < image.height; ++y) {
+      const auto row_at = image.rgb.begin() + static_cast<std::ptrdiff_t>(3) * y * image.width;
+      pixels.insert(pixels.end(), row_at + 3 * image.width / 2, row_at + 3 * image.width);
+    }
+    return pixels;
+  };
+  EXPECT_EQ(right_half(zoomed), right_half(without));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include "tests/clients/view/sample_timeline.h"
 
 namespace footing::timeline {
@@ -147,6 +148,21 @@ TEST(TimelineTextTest, PositionTrialAndMarksAreReadable) {
                   "0:30.0  failure: jump, at 0.0 m, withdrawn", "0:35.0  task run_walk done",
                   "0:40.0  trial p07-1 finished, 28.00 s", "0:50.0  trial 2 ready",
                   "1:00.0  failure: simulation, at 0.0 m"));
+}
+
+TEST(Timeline, TheMarkNearestToTheMouseSaysWhatItIs) {
+  Timeline line = SampleTimeline();
+  line.events = {{36, "T-pose taken: 71.2 kg"}};
+  EXPECT_EQ(TextAt(line, 35.7, 1), "0:36.0  T-pose taken: 71.2 kg");
+  EXPECT_EQ(TextAt(line, 35.2, 1), "0:35.0  task run_walk done");
+  EXPECT_EQ(TextAt(line, 80, 1), "1:20.0");
+  // They move with the zero, stay with their trial, and are listed.
+  EXPECT_EQ(Shifted(line, 12).events[0].at_s, 24);
+  EXPECT_EQ(Only(line, line.trials[0]).events.size(), 1u);
+  EXPECT_EQ(Only(line, line.trials[1]).events.size(), 0u);
+  EXPECT_EQ(Joined(line, line).events.size(), 2u);
+  const std::vector<std::string> lines = MarkLines(line);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), "0:36.0  T-pose taken: 71.2 kg"), 1);
 }
 
 }  // namespace
