@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include "common/net/http_server.h"
-#include "common/net/socket.h"
 
 namespace footing::skeleton {
 namespace {
@@ -20,9 +19,9 @@ namespace {
 namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
-using Socket = transport::PlainSocket;
 using http_server::Answer;
 using http_server::Request;
+using http_server::Stream;
 
 constexpr std::size_t kMostMessageBytes = osc::kMostPacketBytes;
 constexpr std::size_t kMostStateBytes = 200;
@@ -61,8 +60,8 @@ bool IsOwnOrigin(const Request& request) {
 /// The WebSocket of one page.
 class PageSession : public std::enable_shared_from_this<PageSession> {
  public:
-  PageSession(Socket socket, std::shared_ptr<WebServer::Desk> desk, http_server::Place place)
-      : stream_(std::move(socket)), desk_(std::move(desk)), place_(std::move(place)) {}
+  PageSession(Stream stream, std::shared_ptr<WebServer::Desk> desk, http_server::Place place)
+      : stream_(std::move(stream)), desk_(std::move(desk)), place_(std::move(place)) {}
 
   void Start(const Request& request) {
     stream_.set_option(websocket::stream_base::timeout::suggested(boost::beast::role_type::server));
@@ -114,7 +113,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
     if (desk_->options.on_state) desk_->options.on_state(state);
   }
 
-  websocket::stream<Socket> stream_;
+  websocket::stream<Stream> stream_;
   std::shared_ptr<WebServer::Desk> desk_;
   const http_server::Place place_;
   boost::beast::flat_static_buffer<kMostMessageBytes> buffer_;
@@ -172,9 +171,9 @@ Result<std::unique_ptr<WebServer>> WebServer::Open(boost::asio::io_context& io,
                    {"Content-Security-Policy", kPolicy}},
        .answer = [desk](const Request* request) { return AnswerTo(request, *desk); },
        .upgrade =
-           [desk](const Request& request, Socket& socket, const http_server::Place& place) {
+           [desk](const Request& request, Stream& stream, const http_server::Place& place) {
              if (!WantsSocket(request) || !IsOwnOrigin(request)) return false;
-             std::make_shared<PageSession>(std::move(socket), desk, place)->Start(request);
+             std::make_shared<PageSession>(std::move(stream), desk, place)->Start(request);
              return true;
            }});
   if (!server) return server.error();

@@ -1,5 +1,8 @@
 #include "common/net/http_server.h"
 
+#include <optional>
+#include <type_traits>
+
 #include <boost/beast/core/flat_static_buffer.hpp>
 #include <boost/beast/http.hpp>
 
@@ -10,7 +13,6 @@ namespace footing::http_server {
 
 namespace http = boost::beast::http;
 using boost::system::error_code;
-using Socket = transport::PlainSocket;
 
 /// State that the connections share.
 struct Server::Desk {
@@ -21,77 +23,110 @@ struct Server::Desk {
 
 namespace {
 
-/// One connection: a request, an answer, and the end.
+constexpr const char* kPlainText = "text/plain; charset=utf-8";
+
+/// One connection: requests and answers, one after the other.
 class Exchange : public std::enable_shared_from_this<Exchange> {
  public:
-  Exchange(Socket socket, std::shared_ptr<Server::Desk> desk)
-      : socket_(std::move(socket)),
-        deadline_(socket_.get_executor()),
+  Exchange(transport::Socket socket, std::shared_ptr<Server::Desk> desk)
+      : stream_(std::move(socket)),
+        deadline_(stream_.get_executor()),
         desk_(std::move(desk)),
         place_(nullptr, [desk = desk_](void*) { --desk->connections; }) {
     ++desk_->connections;
-    parser_.header_limit(static_cast<std::uint32_t>(desk_->options.most_header_bytes));
-    parser_.body_limit(0);
+    transport::Prepare(stream_.socket());
   }
 
   void Start() {
     deadline_.After(desk_->options.request_within, [this] { Close(); });
-    http::async_read(
-        socket_, buffer_, parser_,
-        [self = shared_from_this()](const error_code& error, std::size_t) { self->OnRead(error); });
+    if (!stream_.socket().needs_handshake()) return Read();
+    stream_.socket().AsyncHandshake(
+        [](const std::function<void()>& step) { step(); },
+        [self = shared_from_this()](tls::Progress progress) { self->OnHandshake(progress); });
   }
 
  private:
+  void OnHandshake(tls::Progress progress) {
+    if (desk_->closed) return;
+    if (progress == tls::Progress::kDone) return Read();
+    if (progress != tls::Progress::kNotTls) return Close();
+    stream_.socket().GoOnInClear();
+    Send(text_, {http::status::bad_request, kPlainText, "this port speaks TLS: use https://\n"},
+         10);
+  }
+
+  void Read() {
+    parser_.emplace();
+    parser_->header_limit(static_cast<std::uint32_t>(desk_->options.most_header_bytes));
+    parser_->body_limit(desk_->options.most_body_bytes);
+    http::async_read(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](const error_code& error, std::size_t) { self->OnRead(error); });
+  }
+
   void OnRead(const error_code& error) {
     if (desk_->closed || error == boost::asio::error::operation_aborted) return;
-    if (error == http::error::end_of_stream || !socket_.is_open()) return;
-    const Request* const request = error ? nullptr : &parser_.get();
+    if (error == http::error::end_of_stream || !stream_.socket().plain().is_open()) return;
+    const Request* const request = error ? nullptr : &parser_->get();
     const Options& options = desk_->options;
-    if (request != nullptr && options.upgrade && options.upgrade(*request, socket_, place_)) {
+    if (request != nullptr && options.upgrade && options.upgrade(*request, stream_, place_)) {
       return deadline_.cancel();
     }
     Answer answer = options.answer(request);
     const unsigned version = request == nullptr ? 10 : request->version();
+    stays_ = request != nullptr && request->keep_alive() && options.next_within.count() > 0 &&
+             request->method() != http::verb::head;
     if (!answer.file.empty()) {
       error_code failed;
+      file_ = {};
       file_.body().open(answer.file.c_str(), boost::beast::file_mode::scan, failed);
       if (!failed) return Send(file_, answer, version);
-      answer = {http::status::not_found, "text/plain; charset=utf-8", "it cannot be read\n"};
+      answer = {http::status::not_found, kPlainText, "it cannot be read\n"};
     }
-    text_.body() = std::move(answer.text);
     Send(text_, answer, version);
   }
 
   template <typename Response>
   void Send(Response& response, const Answer& answer, unsigned version) {
+    if constexpr (std::is_same_v<Response, http::response<http::string_body>>) {
+      response = {};
+      response.body() = answer.text;
+    }
     response.result(answer.status);
     response.version(version);
-    response.keep_alive(false);
-    response.set(http::field::content_type, answer.type);
+    response.keep_alive(stays_);
+    if (!answer.type.empty()) response.set(http::field::content_type, answer.type);
     if (answer.status == http::status::method_not_allowed) {
       response.set(http::field::allow, "GET");
     }
     for (const auto& [name, value] : desk_->options.headers) response.set(name, value);
+    for (const auto& [name, value] : answer.headers) response.set(name, value);
     response.prepare_payload();
     deadline_.After(desk_->options.answer_within, [this] { Close(); });
     http::async_write(
-        socket_, response,
-        [self = shared_from_this()](const error_code&, std::size_t) { self->Close(); });
+        stream_, response,
+        [self = shared_from_this()](const error_code& error, std::size_t) { self->OnSent(error); });
+  }
+
+  void OnSent(const error_code& error) {
+    if (error || !stays_ || desk_->closed) return Close();
+    deadline_.After(desk_->options.next_within, [this] { Close(); });
+    Read();
   }
 
   void Close() {
     deadline_.cancel();
-    error_code ignored;  // It may be gone already.
-    socket_.shutdown(Socket::shutdown_both, ignored);
-    socket_.close(ignored);
+    stream_.socket().SayNoMore();
+    stream_.socket().Close();
   }
 
-  Socket socket_;
+  Stream stream_;
   timer::Timer deadline_;
   std::shared_ptr<Server::Desk> desk_;
   Place place_;
+  bool stays_ = false;  ///< Another request may follow.
   boost::beast::flat_static_buffer<kMostHeaderBytes> buffer_;
-  http::request_parser<http::empty_body> parser_;
+  std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> text_;
   http::response<http::file_body> file_;
 };
@@ -107,7 +142,7 @@ Result<std::unique_ptr<Server>> Server::Open(boost::asio::io_context& io,
       io, address,
       [desk](transport::Socket socket) {
         if (desk->connections < desk->options.most_connections)
-          std::make_shared<Exchange>(std::move(socket.plain()), desk)->Start();
+          std::make_shared<Exchange>(std::move(socket), desk)->Start();
       },
       security);
   if (!listener) return listener.error();

@@ -10,19 +10,19 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/status.hpp>
+#include <boost/beast/http/string_body.hpp>
 
 #include "common/base/result.h"
 #include "common/net/address.h"
+#include "common/net/http_stream.h"
 #include "common/net/listener.h"
-#include "common/net/socket.h"
 
-/// HTTP/1.0 and 1.1 for pages of this host: one request a connection, and no body in it.
+/// HTTP/1.0 and 1.1, in clear or over TLS.
 namespace footing::http_server {
 
-using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+using Request = boost::beast::http::request<boost::beast::http::string_body>;
 using Headers = std::vector<std::pair<std::string, std::string>>;
 
 struct Answer {
@@ -30,6 +30,7 @@ struct Answer {
   std::string type;                 ///< Content-Type.
   std::string text = {};            ///< The body.
   std::filesystem::path file = {};  ///< Its content is the body; empty: `text` is.
+  Headers headers = {};             ///< Besides those of every answer.
 };
 
 /// A place among the connections; it is free when the last copy is gone.
@@ -38,13 +39,15 @@ using Place = std::shared_ptr<void>;
 struct Options {
   int most_connections = 8;              ///< More are closed at once.
   std::size_t most_header_bytes = 4096;  ///< A request has no more; at most kMostHeaderBytes.
+  std::size_t most_body_bytes = 0;       ///< A longer one is refused by its announced length.
   std::chrono::seconds request_within{5};
   std::chrono::seconds answer_within{5};
-  Headers headers = {};  ///< Each answer has them.
+  std::chrono::seconds next_within{0};  ///< For another request of the connection; 0: only one.
+  Headers headers = {};                 ///< Each answer has them.
   /// The answer to a request; nullptr: what came is not one.
   std::function<Answer(const Request*)> answer;
   /// Takes over the connection of a request, or returns false. Without it nobody does.
-  std::function<bool(const Request&, transport::PlainSocket&, const Place&)> upgrade = {};
+  std::function<bool(const Request&, Stream&, const Place&)> upgrade = {};
 };
 
 inline constexpr std::size_t kMostHeaderBytes = 8192;
