@@ -18,6 +18,7 @@
 #include "common/net/known_servers.h"
 #include "common/net/server.h"
 #include "common/net/tls_context.h"
+#include "common/qr/qr_code.h"
 #include "common/runtime/clock.h"
 
 namespace footing::ctl {
@@ -250,7 +251,7 @@ struct TrustOptions {
 };
 
 std::string Drawn(const std::string& fingerprint) {
-  return isatty(STDOUT_FILENO) == 1 ? "\n" + display::QrCode(fingerprint) : "";
+  return isatty(STDOUT_FILENO) == 1 ? "\n" + qr::QrCode(fingerprint) : "";
 }
 
 bool IsThere(const std::string& path) { return access(path.c_str(), F_OK) == 0; }

@@ -5,10 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <vector>
-
-#include <qrencode.h>
 
 #include "clients/ctl/report/device_table.h"
 #include "common/base/text.h"
@@ -405,34 +402,6 @@ std::string Lamps(std::uint32_t leds) {
   std::string text;
   for (unsigned bit = 0; bit < 4; ++bit) text += (leds >> bit & 1u) != 0 ? '1' : '0';
   return text;
-}
-
-namespace {
-
-constexpr int kBorder = 4;                             // ISO/IEC 18004: four squares.
-constexpr const char* kBlackOnWhite = "\x1b[30;107m";  // Whatever the terminal's colours are.
-constexpr const char* kPlain = "\x1b[0m";
-
-}  // namespace
-
-std::string QrCode(const std::string& text) {
-  const std::unique_ptr<QRcode, void (*)(QRcode*)> code(
-      QRcode_encodeString8bit(text.c_str(), 0, QR_ECLEVEL_L), QRcode_free);
-  if (!code) return "";
-  const auto dark = [&](int row, int column) {
-    const bool inside = row >= 0 && column >= 0 && row < code->width && column < code->width;
-    return inside && (code->data[row * code->width + column] & 1u) != 0;
-  };
-  std::string drawn;
-  for (int row = -kBorder; row < code->width + kBorder; row += 2) {
-    drawn += kBlackOnWhite;
-    for (int column = -kBorder; column < code->width + kBorder; ++column) {
-      const bool upper = dark(row, column), lower = dark(row + 1, column);
-      drawn += upper && lower ? "█" : upper ? "▀" : lower ? "▄" : " ";
-    }
-    drawn += std::string(kPlain) + "\n";
-  }
-  return drawn;
 }
 
 }  // namespace footing::ctl::display

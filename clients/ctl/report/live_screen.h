@@ -72,8 +72,4 @@ std::string Bar(double value, double full, int cells);
 /// Bits 0 to 3 as "1010", first lamp first.
 std::string Lamps(std::uint32_t leds);
 
-/// The text as a QR code for a terminal with UTF-8, two rows of squares a line, dark on light with
-/// the light border that cameras need. Empty when the text is too long for one.
-std::string QrCode(const std::string& text);
-
 }  // namespace footing::ctl::display

@@ -1,4 +1,4 @@
-#include "clients/ctl/report/live_screen.h"
+#include "common/qr/qr_code.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace footing::ctl::display {
+namespace footing::qr {
 namespace {
 
 TEST(QrCode, HasSquaresAtThreeCornersAndALightBorder) {
@@ -27,4 +27,4 @@ TEST(QrCode, HasSquaresAtThreeCornersAndALightBorder) {
 }
 
 }  // namespace
-}  // namespace footing::ctl::display
+}  // namespace footing::qr
