@@ -239,9 +239,10 @@ def names_of(name, messages, table):
     own = table.get(name, {})
     names = []
     for value, number, _ in values_of(own.get("proto", name), messages):
-        if number != len(names):
-            raise Unclear(f"{name}: its numbers are not 0, 1, 2, ...")
+        if number < len(names):
+            raise Unclear(f"{name}: its numbers do not rise from 0")
         text = own.get("unspecified", "unknown")
+        names += [text] * (number - len(names))  # Numbers that no value has.
         if number > 0:
             text = own.get("names", {}).get(value.lower(), value.lower())
         names.append(text.replace("_", " ") if own.get("spaces") else text)

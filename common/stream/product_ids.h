@@ -16,6 +16,15 @@ inline constexpr std::uint32_t kVendorSony = 0x054c;
 inline constexpr std::uint32_t kProductZcm1 = 0x03d5;  ///< PS Move, over USB and over Bluetooth.
 inline constexpr std::uint32_t kProductZcm2 = 0x0c5e;
 
+/// An inertial sensor that is not a HID device: its reports are Footing's own.
+inline constexpr std::uint32_t kVendorFooting = 0xf007;
+inline constexpr std::uint32_t kProductInertial = 0x0001;
+
+inline bool IsInertialSensor(std::uint32_t vendor, std::uint32_t product) {
+  return vendor == kVendorFooting && product == kProductInertial;
+}
+
+/// A HID device that Footing knows.
 inline bool IsKnownDevice(std::uint32_t vendor, std::uint32_t product) {
   return (vendor == kVendorNintendo && (product == kProductFirst || product == kProductTr)) ||
          (vendor == kVendorSony && (product == kProductZcm1 || product == kProductZcm2));

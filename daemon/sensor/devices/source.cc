@@ -207,7 +207,8 @@ stream::DeviceRole RoleOf(v1::DeviceRole role) {
 }  // namespace
 
 std::string WhatIsWrong(const v1::DeviceAttach& attach) {
-  if (!stream::IsKnownDevice(attach.vendor(), attach.product())) {
+  if (!stream::IsKnownDevice(attach.vendor(), attach.product()) &&
+      !stream::IsInertialSensor(attach.vendor(), attach.product())) {
     return "vendor " + std::to_string(attach.vendor()) + " and product " +
            std::to_string(attach.product()) +
            " are unknown; the protocol lists those of all devices";
@@ -228,7 +229,9 @@ DeviceIdentity IdentityOf(const v1::DeviceAttach& attach) {
   identity.name = attach.name();
   identity.serial = attach.serial();
   identity.place = "device socket, slot " + std::to_string(attach.slot());
-  identity.simulated = true;
+  // Only a sensor whose reports are ours can be hardware behind this socket.
+  identity.simulated =
+      !(attach.hardware() && stream::IsInertialSensor(attach.vendor(), attach.product()));
   identity.wished_rig = attach.rig();
   identity.wished_role = RoleOf(attach.role());
   return identity;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/units.h"
 #include "common/board/geometry.h"
@@ -23,10 +24,17 @@ struct BoardReading {
   bool uncalibrated = false;
 };
 
+/// A sample of a device whose reports have times of its own, turned into the host's.
+struct TimedMotion {
+  stream::MotionSample sample;
+  std::int64_t sampled_ns = 0;
+};
+
 /// The samples of one report.
 struct Decoded {
   std::array<stream::MotionSample, 2> motion{};  ///< Older first, evenly spaced over the report.
   std::size_t motion_count = 0;
+  std::vector<TimedMotion> timed_motion;  ///< Instead of `motion`: oldest first.
   std::optional<BoardReading> board;
   std::optional<stream::NunchukSample> nunchuk;
   std::optional<stream::GamepadSample> gamepad;
@@ -36,7 +44,9 @@ struct Decoded {
   /// The device took a new measurement: some sample differs from the report before.
   bool changed = false;
 
-  bool empty() const { return motion_count == 0 && !board && !nunchuk && !gamepad && !camera; }
+  bool empty() const {
+    return motion_count == 0 && timed_motion.empty() && !board && !nunchuk && !gamepad && !camera;
+  }
 };
 
 /// Bits of stream::GamepadButton from those of reports::ClassicButton.

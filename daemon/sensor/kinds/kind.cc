@@ -1,5 +1,6 @@
 #include "daemon/sensor/kinds/kind.h"
 
+#include "daemon/sensor/kinds/inertial.h"
 #include "daemon/sensor/kinds/ps_move.h"
 #include "daemon/sensor/kinds/wiimote_protocol.h"
 
@@ -9,6 +10,9 @@ std::unique_ptr<Kind> MakeKind(const decode::KindOptions& options, const decode:
                                const Stored& stored) {
   if (ps_move::PsMove::Matches(product)) {
     return std::make_unique<ps_move::PsMove>(product, stored);
+  }
+  if (inertial::InertialSensor::Matches(product)) {
+    return std::make_unique<inertial::InertialSensor>();
   }
   return std::make_unique<WiimoteProtocol>(options, product);
 }

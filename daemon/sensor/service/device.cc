@@ -124,6 +124,11 @@ void SampleTiming::Take(std::int64_t received_ns, bool changed) {
   sampled_ns_ = std::max(sampled_ns_, clock_.Advance(received_ns, changed));
 }
 
+void SampleTiming::TakeTimed(std::int64_t received_ns, std::int64_t sampled_ns) {
+  statistics_.Advance(received_ns);
+  sampled_ns_ = std::max(sampled_ns_, std::min(sampled_ns, received_ns));
+}
+
 std::int64_t SampleTiming::HalfEarlierNs(std::int64_t before_ns) const {
   const auto half_ns = static_cast<std::int64_t>(timing_.report_period_s * 0.5e9);
   return std::clamp(sampled_ns_ - half_ns, before_ns, sampled_ns_);
@@ -243,6 +248,7 @@ void Device::Stamp(const devices::IncomingReport& report, Sample& sample) const 
 void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded& decoded,
                          TickContent& content) {
   if (!HasSpace(content)) return;
+  if (!decoded.timed_motion.empty()) return TakeTimedMotion(report, decoded, content);
   const std::int64_t before_ns = timing_.sampled_ns();
   if (!decoded.buttons_only) timing_.Take(report.received_ns, decoded.changed);
   TakeMotion(report, decoded, before_ns, content);
@@ -274,6 +280,23 @@ void Device::TakeMotion(const devices::IncomingReport& report, decode::Decoded& 
     motion_.Take(sample, measured);
     counters_.repeats += sample.repeated && measured ? 1 : 0;
     counters_.clipped += sample.clipped_axes != 0 ? 1 : 0;
+    content.motion.push_back(sample);
+  }
+}
+
+void Device::TakeTimedMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
+                             TickContent& content) {
+  for (decode::TimedMotion& timed : decoded.timed_motion) {
+    const bool newest = &timed == &decoded.timed_motion.back();
+    stream::MotionSample& sample = timed.sample;
+    const std::int64_t before_ns = timing_.sampled_ns();
+    if (newest) timing_.TakeTimed(report.received_ns, timed.sampled_ns);
+    Stamp(report, sample);
+    // Between the report before and the newest one of this.
+    if (!newest) sample.sampled_ns = std::clamp(timed.sampled_ns, before_ns, report.received_ns);
+    sample.report_count = timing_.statistics().reports();
+    motion_.Take(sample, true);
+    counters_.repeats += sample.repeated ? 1 : 0;
     content.motion.push_back(sample);
   }
 }

@@ -90,6 +90,8 @@ class SampleTiming {
 
   /// A report with a new measurement or a repeated one (`changed` false).
   void Take(std::int64_t received_ns, bool changed);
+  /// A report whose newest sample has a time of the device's own.
+  void TakeTimed(std::int64_t received_ns, std::int64_t sampled_ns);
   /// Time of the newest sample; never goes back.
   std::int64_t sampled_ns() const { return sampled_ns_; }
   /// Time of the older of two samples in the newest report, half a report earlier; `before_ns` is
@@ -221,6 +223,8 @@ class Device {
   void Restart();
   void TakeMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
                   std::int64_t before_ns, TickContent& content);
+  void TakeTimedMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
+                       TickContent& content);
   void TakeBoard(const devices::IncomingReport& report, const decode::BoardReading& reading,
                  TickContent& content);
   void TakeDecoded(const devices::IncomingReport& report, decode::Decoded& decoded,

@@ -28,6 +28,7 @@ CONTACT_BODY_RIGHT_FOOT: ContactBody
 CONTACT_BODY_UNSPECIFIED: ContactBody
 DESCRIPTOR: _descriptor.FileDescriptor
 DEVICE_KIND_BALANCE_BOARD: DeviceKind
+DEVICE_KIND_INERTIAL: DeviceKind
 DEVICE_KIND_PRO_CONTROLLER: DeviceKind
 DEVICE_KIND_PS_MOVE: DeviceKind
 DEVICE_KIND_UNSPECIFIED: DeviceKind
@@ -91,8 +92,9 @@ class ContactFrame(_message.Message):
     def __init__(self, source: _Optional[str] = ..., rig: _Optional[str] = ..., age_ns: _Optional[int] = ..., body: _Optional[_Union[ContactBody, str]] = ..., cells: _Optional[_Iterable[_Union[ContactCell, _Mapping]]] = ..., simulated: bool = ..., sent_ns: _Optional[int] = ...) -> None: ...
 
 class DeviceAttach(_message.Message):
-    __slots__ = ["bus", "name", "product", "rig", "role", "serial", "slot", "vendor"]
+    __slots__ = ["bus", "hardware", "name", "product", "rig", "role", "serial", "slot", "vendor"]
     BUS_FIELD_NUMBER: _ClassVar[int]
+    HARDWARE_FIELD_NUMBER: _ClassVar[int]
     NAME_FIELD_NUMBER: _ClassVar[int]
     PRODUCT_FIELD_NUMBER: _ClassVar[int]
     RIG_FIELD_NUMBER: _ClassVar[int]
@@ -101,6 +103,7 @@ class DeviceAttach(_message.Message):
     SLOT_FIELD_NUMBER: _ClassVar[int]
     VENDOR_FIELD_NUMBER: _ClassVar[int]
     bus: int
+    hardware: bool
     name: str
     product: int
     rig: str
@@ -108,7 +111,7 @@ class DeviceAttach(_message.Message):
     serial: str
     slot: int
     vendor: int
-    def __init__(self, slot: _Optional[int] = ..., bus: _Optional[int] = ..., vendor: _Optional[int] = ..., product: _Optional[int] = ..., name: _Optional[str] = ..., serial: _Optional[str] = ..., rig: _Optional[str] = ..., role: _Optional[_Union[DeviceRole, str]] = ...) -> None: ...
+    def __init__(self, slot: _Optional[int] = ..., bus: _Optional[int] = ..., vendor: _Optional[int] = ..., product: _Optional[int] = ..., name: _Optional[str] = ..., serial: _Optional[str] = ..., rig: _Optional[str] = ..., role: _Optional[_Union[DeviceRole, str]] = ..., hardware: bool = ...) -> None: ...
 
 class DeviceDetach(_message.Message):
     __slots__ = ["reason", "slot"]

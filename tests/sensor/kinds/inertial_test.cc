@@ -1,0 +1,152 @@
+#include "daemon/sensor/kinds/inertial.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/stream/product_ids.h"
+
+namespace footing::inertial {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+struct Measured {
+  std::uint32_t age_us = 0;
+  float acceleration_mps2[3] = {0, 0, 9.8f};
+  float rate[3] = {0, 0, 0};
+};
+
+template <typename Value>
+void Append(std::vector<std::uint8_t>& bytes, const Value& value) {
+  const auto* const first = reinterpret_cast<const std::uint8_t*>(&value);
+  bytes.insert(bytes.end(), first, first + sizeof(value));
+}
+
+/// By the table of docs/devices.md.
+std::vector<std::uint8_t> ReportOf(std::uint16_t number, std::uint64_t newest_us,
+                                   const std::vector<Measured>& samples, std::uint8_t flags = 2) {
+  std::vector<std::uint8_t> bytes = {1, flags, 0, 80};
+  Append(bytes, number);
+  Append(bytes, newest_us);
+  bytes.push_back(static_cast<std::uint8_t>(samples.size()));
+  for (const Measured& one : samples) {
+    Append(bytes, one.age_us);
+    Append(bytes, one.acceleration_mps2);
+    Append(bytes, one.rate);
+  }
+  return bytes;
+}
+
+std::optional<decode::Decoded> Take(InertialSensor& sensor, std::int64_t received_ns,
+                                    const std::vector<std::uint8_t>& report) {
+  kinds::Outputs outputs;
+  return sensor.Take(received_ns, report, outputs);
+}
+
+TEST(InertialReport, AxesOfThePhoneBecomeThoseOfS) {
+  // S is x left, y front, z down; the phone's are right, top, out of the screen.
+  const auto report = reports::DecodeInertial(ReportOf(7, 1000, {{0, {1, 2, 9.8f}, {3, 4, 5}}}));
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->number, 7);
+  EXPECT_DOUBLE_EQ(report->battery_fraction, 0.8);
+  EXPECT_TRUE(report->samples[0].specific_force_S_mps2.isApprox(
+      Eigen::Vector3d(-1, 2, -static_cast<double>(9.8f))));
+  EXPECT_TRUE(report->samples[0].angular_velocity_S_radps.isApprox(Eigen::Vector3d(-3, 4, -5)));
+}
+
+TEST(InertialReport, InvertedSignsAndDegreesAreUndone) {
+  const std::uint8_t ios =
+      reports::kInertialInverted | reports::kInertialHasRate | reports::kInertialDegrees;
+  const auto report =
+      reports::DecodeInertial(ReportOf(0, 1000, {{0, {0, 0, -9.8f}, {180, 0, 0}}}, ios));
+  ASSERT_TRUE(report);
+  EXPECT_NEAR(report->samples[0].specific_force_S_mps2.z(), -9.8, 1e-6) << "face up at rest";
+  EXPECT_NEAR(report->samples[0].angular_velocity_S_radps.x(), -kPi, 1e-6);
+}
+
+TEST(InertialReport, RefusesWhatNoSensorSends) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto good = ReportOf(0, 1000, {{10}, {0}});
+  ASSERT_TRUE(reports::DecodeInertial(good));
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    EXPECT_FALSE(reports::DecodeInertial(reports::Bytes(good).first(size))) << size;
+  }
+  auto longer = good;
+  longer.push_back(0);
+  EXPECT_FALSE(reports::DecodeInertial(longer));
+  EXPECT_FALSE(reports::DecodeInertial(ReportOf(0, 1000, {{0, {nan, 0, 0}}})));
+  EXPECT_FALSE(reports::DecodeInertial(ReportOf(0, 1000, {{0, {0, 0, 1e9f}}})));
+  EXPECT_FALSE(reports::DecodeInertial(ReportOf(0, 1000, {{0, {0, 0, 9.8f}, {0, nan, 0}}})));
+  EXPECT_FALSE(reports::DecodeInertial(ReportOf(0, 1000, {{0}, {10}}))) << "ages must fall";
+  EXPECT_FALSE(reports::DecodeInertial(ReportOf(0, 1000, {{2000}}))) << "before the clock began";
+  EXPECT_FALSE(reports::DecodeInertial(ReportOf(0, ~std::uint64_t{0}, {{0}})));
+  EXPECT_FALSE(reports::DecodeInertial(ReportOf(0, 1000, {})));
+  EXPECT_FALSE(reports::DecodeInertial(
+      ReportOf(0, 1000, std::vector<Measured>(reports::kMostInertialSamples + 1))));
+}
+
+TEST(OwnClock, TimesAreThoseOfTheFastestReports) {
+  // The device's clock is 5 s behind; reports take 4 ms and every fifth one 120 ms more.
+  OwnClock clock;
+  const std::int64_t behind_ns = 5'000 * kMs;
+  for (int i = 0; i < 200; ++i) {
+    const std::int64_t device_ns = (1'000 + 50 * i) * kMs;
+    const std::int64_t delay_ns = (i % 5 == 3 ? 124 : 4) * kMs;
+    clock.Take(device_ns + behind_ns + delay_ns, device_ns);
+    EXPECT_EQ(clock.HostNs(device_ns), device_ns + behind_ns + 4 * kMs) << i;
+  }
+}
+
+TEST(OwnClock, ADeviceThatStartsAgainIsFollowedAtOnce) {
+  OwnClock clock;
+  clock.Take(100'000 * kMs, 90'000 * kMs);
+  clock.Take(101'000 * kMs, 3 * kMs);  // Its page was loaded again.
+  EXPECT_EQ(clock.HostNs(3 * kMs), 101'000 * kMs);
+  clock.Take(102'000 * kMs, 900'000 * kMs);  // And one from the future.
+  EXPECT_EQ(clock.HostNs(900'000 * kMs), 102'000 * kMs);
+}
+
+TEST(InertialSensor, BunchedSamplesKeepTheirOwnTimes) {
+  InertialSensor sensor;
+  ASSERT_TRUE(sensor.live());
+  ASSERT_TRUE(Take(sensor, 1'000 * kMs, ReportOf(0, 500'000, {{0}})));
+  // Three samples, 16 ms apart, arrive together 100 ms late.
+  const auto decoded = Take(sensor, 1'148 * kMs, ReportOf(1, 548'000, {{32'000}, {16'000}, {0}}));
+  ASSERT_TRUE(decoded);
+  ASSERT_EQ(decoded->timed_motion.size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(decoded->timed_motion[static_cast<std::size_t>(i)].sampled_ns,
+              (1'016 + 16 * i) * kMs);
+  }
+  EXPECT_TRUE(sensor.Note(0).empty());
+  ASSERT_TRUE(Take(sensor, 1'200 * kMs, ReportOf(4, 600'000, {{0}})));
+  EXPECT_EQ(sensor.Note(0), "2 of its reports were lost on the way");
+}
+
+TEST(InertialSensor, VibrationIsAskedForAgainUntilItEnds) {
+  InertialSensor sensor;
+  link::Outbox outbox;
+  EXPECT_FALSE(sensor.NextOutput(0, outbox));
+  outbox.SetRumble(true);
+  EXPECT_EQ(sensor.NextOutput(1'000 * kMs, outbox), (reports::OutputReport{2, 1}));
+  EXPECT_FALSE(sensor.NextOutput(1'100 * kMs, outbox));
+  EXPECT_EQ(sensor.NextOutput(1'400 * kMs, outbox), (reports::OutputReport{2, 1}));
+  outbox.SetRumble(false);
+  EXPECT_EQ(sensor.NextOutput(1'410 * kMs, outbox), (reports::OutputReport{2, 0}));
+}
+
+TEST(InertialSensor, IsFoundByItsProduct) {
+  const auto kind =
+      kinds::MakeKind({}, {stream::kVendorFooting, stream::kProductInertial, "x"}, {});
+  EXPECT_EQ(kind->kind(), stream::DeviceKind::kInertial);
+  EXPECT_FALSE(stream::IsKnownDevice(stream::kVendorFooting, stream::kProductInertial))
+      << "no HID device can say that it is one";
+}
+
+}  // namespace
+}  // namespace footing::inertial
