@@ -7,7 +7,8 @@ import { Session } from './session.js';
 import { Strips } from './strips.js';
 
 const CHANNELS = ['status', 'motion', 'features', 'boards', 'setup', 'reference', 'skeletons', 'track', 'characters', 'study'];
-const MAX_HZ = Number(new URLSearchParams(location.search).get('hz')) || 60;
+// Ticks a second; half of them where a processor draws.
+let maxHz = Number(new URLSearchParams(location.search).get('hz'));
 const RECENT_S = 5, PAST_S = 180, PAST_STEP_S = 1 / 15;
 const STALE_S = 1, PANELS_EVERY_MS = 200;
 const GRAVITY_MPS2 = 9.80665;
@@ -98,7 +99,7 @@ function shownFrame() {
   if (!newest) return null;
   const now = state.simulation.serverNs() * 1e-9;
   if (!(now > 0)) return newest;
-  const frame = framesAt(now - state.lag - 1 / MAX_HZ - state.delay);
+  const frame = framesAt(now - state.lag - 1 / maxHz - state.delay);
   state.shownAge = now - frame.time;
   return frame;
 }
@@ -151,7 +152,7 @@ function showServers() {
 
 function openSessions(count) {
   for (let i = 0; i < count; ++i) {
-    const session = new Session({ path: `/session/${i}`, name: 'live page', channels: CHANNELS, maxHz: MAX_HZ }, {
+    const session = new Session({ path: `/session/${i}`, name: 'live page', channels: CHANNELS, maxHz }, {
       onWelcome: welcome => { session.serverName = welcome.server_id; },
       onTick: tick => takeTick(session, tick),
       onGap: missing => { session.missed = (session.missed ?? 0) + missing; },
@@ -222,8 +223,11 @@ async function start() {
   watchControls();
   watchPointer(element('picture'));
   try {
-    animate(new Renderer(element('picture')));
+    const renderer = new Renderer(element('picture'));
+    maxHz ||= renderer.isSoftware ? 30 : 60;
+    animate(renderer);
   } catch (error) {
+    maxHz ||= 30;
     showPrompt(`No picture: ${error.message}. The rest of the page works.`);
   }
   const about = await enter(why => { say('status', why); say('notice', why); element('notice').hidden = false; });

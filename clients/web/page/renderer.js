@@ -189,6 +189,7 @@ export class Renderer {
     // A processor that draws has no time for smooth edges and fine pixels.
     this.isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(name);
     probe?.getExtension('WEBGL_lose_context')?.loseContext();
+    if (this.isSoftware) this.scale = 0.7;
     this.gl = canvas.getContext('webgl2', { ...wanted, antialias: !this.isSoftware });
     if (!this.gl) throw new Error('this browser has no WebGL 2, which the picture needs');
     canvas.addEventListener('webglcontextlost', event => event.preventDefault());
@@ -200,8 +201,9 @@ export class Renderer {
     const gl = this.gl;
     this.figures = link(gl, FIGURE_VERTEX, FIGURE_FRAGMENT);
     this.ground = link(gl, GROUND_VERTEX, GROUND_FRAGMENT);
-    this.meshes = { balls: this.mesh(roundMesh(18, 12, false)),
-                    limbs: this.mesh(roundMesh(12, 8, true)), boxes: this.mesh(boxMesh()) };
+    const [balls, limbs] = this.isSoftware ? [[12, 8], [8, 4]] : [[18, 12], [12, 8]];
+    this.meshes = { balls: this.mesh(roundMesh(...balls, false)),
+                    limbs: this.mesh(roundMesh(...limbs, true)), boxes: this.mesh(boxMesh()) };
     this.groundArray = gl.createVertexArray();
     gl.bindVertexArray(this.groundArray);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
@@ -237,8 +239,8 @@ export class Renderer {
   // long, `frame_s` from picture to picture.
   resize(frame_s) {
     if (this.isSoftware) {
-      this.slow_s += 0.1 * (frame_s - this.slow_s);
-      if (++this.pictures % 20 === 0) {
+      this.slow_s += 0.2 * (frame_s - this.slow_s);
+      if (++this.pictures % 10 === 0) {
         const factor = this.slow_s > 0.07 ? 0.8 : this.slow_s < 0.025 ? 1.25 : 1;
         this.scale = clamp(this.scale * factor, 0.4, 1);
       }
