@@ -21,7 +21,6 @@ MOST_MEMBERS = 20
 # Path:class; the most members it may have, and what it is a table of.
 TABLES = {
     "common/virtual/motion/markers.h:MarkerSet": (22, "a configuration: a row of the table of marker sets"),
-    "daemon/offline/analysis/sway.h:Sway": (23, "a report of measures, each with its definition"),
     "daemon/simulation/gait/gains.h:HoppingGains": (24, "a configuration: a section of the files of gains"),
 }
 

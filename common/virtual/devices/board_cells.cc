@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
+#include "common/base/low_pass.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/board/layout.h"
@@ -143,7 +144,7 @@ GroundReaction React(const BodyCourse& course, double cutoff_hz) {
   Eigen::MatrixXd both(6, n);
   both.topRows<3>() = Derivative(Derivative(course.com_m, rate), rate);
   both.bottomRows<3>() = Derivative(course.angular_momentum, rate);
-  both = motion::LowPass(both, rate, cutoff_hz);
+  both = LowPass(both, rate, cutoff_hz);
   GroundReaction out;
   out.force_n = m * both.topRows<3>();
   out.force_n.row(2).array() += m * kStandardGravityMps2;
@@ -225,7 +226,7 @@ GroundReaction ReactToImpacts(const body::Body& body, const motion::Motion& moti
   const GroundReaction hard = React(Follow(body, motion, kHardPoseHz), kHardForceHz);
   const Eigen::MatrixXd apart = hard.force_n - out.force_n;
   const Eigen::MatrixXd square = apart.colwise().squaredNorm();
-  const Eigen::MatrixXd energy = motion::LowPass(square, motion.rate_hz, kHardHz);
+  const Eigen::MatrixXd energy = LowPass(square, motion.rate_hz, kHardHz);
   const double known_n = kHardShare * smooth.mass_kg * kStandardGravityMps2;
   for (Eigen::Index i = 0; i < smooth.frames(); ++i) {
     const auto at = static_cast<std::size_t>(i);

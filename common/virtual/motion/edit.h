@@ -69,15 +69,6 @@ Result<std::vector<std::string>> HumanBones(const body::Skeleton& skeleton);
 /// the person looks along x with the hips over the origin.
 Motion FacingForward(const Motion& motion, const body::Landmarks& landmarks);
 
-// Smoothing and derivatives of sampled signals: a row a signal, a column a time, at equal steps.
-
-/// Low-pass without lag: a Butterworth filter of second order run forwards, then backwards, with
-/// the ends continued by point reflection. Both passes together have -3 dB at `cutoff_hz` (D.
-/// Winter, "Biomechanics and Motor Control of Human Movement", 2.2.4.4: the single filter's
-/// frequency is raised by 1 / 0.802). A cutoff of 0.45 of the rate or more leaves the signal as it
-/// is.
-Eigen::MatrixXd LowPass(const Eigen::MatrixXd& signal, double rate_hz, double cutoff_hz);
-
 /// Natural cubic spline through samples at equal steps: continuous to the second derivative.
 class Spline {
  public:

@@ -12,15 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/board/geometry.h"
 #include "common/cli/cli.h"
+#include "common/posturography/sway.h"
 #include "common/virtual/motion/edit.h"
-#include "daemon/offline/analysis/sway.h"
 #include "daemon/offline/eval/report.h"
 
 namespace footing::eval {
@@ -28,7 +27,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using posturography::Stretches;
-using posturography::Sway;
 
 /// More than anybody weighs, and less than a light adult's weight in newtons.
 constexpr double kMostPersonKg = 300;
@@ -43,9 +41,8 @@ struct Options {
   std::string corners;
   std::string cop;
   std::string board;  ///< Board to take from an export with several.
-  CopFilterOptions filter;
+  posturography::CopFilterOptions filter;
   double least_s = kShortestS;
-  posturography::BoardShape shape;
   double spacing_x_mm = board::kBalanceBoard.sensor_distance_x_m * 1e3;
   double spacing_y_mm = board::kBalanceBoard.sensor_distance_y_m * 1e3;
 };
@@ -102,13 +99,15 @@ Result<Input> ReadCorners(const Options& options) {
   const auto read = ReadSamples(options);
   if (!read) return read.error();
   const std::vector<posturography::CornerSample>& samples = read->samples;
-  posturography::BoardShape shape = options.shape;
-  shape.geometry.sensor_distance_x_m = options.spacing_x_mm / 1000;
-  shape.geometry.sensor_distance_y_m = options.spacing_y_mm / 1000;
-  posturography::Standing standing = posturography::FindStanding(samples, shape);
+  stream::BoardGeometry geometry = board::kBalanceBoard;
+  geometry.sensor_distance_x_m = options.spacing_x_mm / 1000;
+  geometry.sensor_distance_y_m = options.spacing_y_mm / 1000;
+  const posturography::StandingLimits limits;
+  posturography::Standing standing =
+      posturography::FindStanding(posturography::LoadsOn(samples, {}, geometry), limits);
   if (standing.weight_n <= 0) {
     return InvalidData(options.corners + ": no sample with a load above " +
-                       std::to_string(NewtonsToKilograms(shape.least_body_weight_n)).substr(0, 4) +
+                       std::to_string(NewtonsToKilograms(limits.least_body_weight_n)).substr(0, 4) +
                        " kg or more: nobody stood on the board");
   }
   if (NewtonsToKilograms(standing.weight_n) > kMostPersonKg) {
@@ -154,53 +153,53 @@ void AppendGaps(Input& input) {
                            "; nothing is measured across them");
 }
 
-void Append(const Sway& sway, ordered_json& out) {
-  constexpr double kMm = 1e3;
-  constexpr double kMm2 = 1e6;
+/// Resamples and filters every stretch, and adds to the answer what was done. The even rate of the
+/// samples behind it; 0: it is uneven.
+Result<double> FilterCop(const posturography::CopFilter& filter, Input& input) {
+  const double median_s = posturography::MedianInterval(input.stretches);
+  const bool even = filter.rate_hz > 0;
+  input.head["recorded_rate_hz"] = median_s > 0 ? 1 / median_s : 0.0;
+  if (const auto done = posturography::ResampleAll(filter, input.stretches); !done) {
+    return done.error();
+  }
+  posturography::LowPassAll(filter, input.stretches);
+  const auto or_null = [](bool given, double value) {
+    return given ? ordered_json(value) : ordered_json(nullptr);
+  };
+  input.head["filter"] = filter.Text();
+  if (even) input.head["filter_window_s"] = filter.WindowS(median_s);
+  input.head["rate_hz"] = or_null(even, filter.rate_hz);
+  input.head["cutoff_hz"] = or_null(filter.cutoff_hz > 0, filter.cutoff_hz);
+  return even ? filter.rate_hz : posturography::EvenRate(input.stretches);
+}
+
+void Append(const posturography::Sway& sway, ordered_json& out) {
   out["samples"] = sway.samples;
-  out["duration_s"] = sway.duration_s;
-  out["path_length_mm"] = sway.path_m * kMm;
-  out["path_ml_mm"] = sway.path_x_m * kMm;
-  out["path_ap_mm"] = sway.path_y_m * kMm;
-  out["mean_velocity_mm_s"] = sway.mean_velocity_mps * kMm;
-  out["mean_velocity_ml_mm_s"] = sway.mean_velocity_x_mps * kMm;
-  out["mean_velocity_ap_mm_s"] = sway.mean_velocity_y_mps * kMm;
-  out["rms_ml_mm"] = sway.rms_x_m * kMm;
-  out["rms_ap_mm"] = sway.rms_y_m * kMm;
-  out["rms_radial_mm"] = sway.rms_radial_m * kMm;
-  out["mean_distance_mm"] = sway.mean_distance_m * kMm;
-  out["range_ml_mm"] = sway.range_x_m * kMm;
-  out["range_ap_mm"] = sway.range_y_m * kMm;
-  out["ellipse95_area_mm2"] = sway.ellipse95_prediction_m2 * kMm2;
-  out["ellipse95_definition"] = "F-based prediction ellipse (Schubert & Kirchner 2014)";
-  out["prediction_ellipse95_F_mm2"] = sway.ellipse95_prediction_m2 * kMm2;
-  out["ellipse95_area_chi2_mm2"] = sway.ellipse95_chi_square_m2 * kMm2;
-  out["ellipse95_area_prieto_F3_mm2"] = sway.ellipse95_prieto_m2 * kMm2;
-  out["axis_major_sd_mm"] = sway.ellipse_axis_major_sd_m * kMm;
-  out["axis_minor_sd_mm"] = sway.ellipse_axis_minor_sd_m * kMm;
-  out["axis_major_angle_deg"] = RadiansToDegrees(sway.ellipse_angle_rad);
-  out["sway_area_mm2_s"] = sway.sway_area_rate_m2ps * kMm2;
-  out["circle95_area_mm2"] = sway.circle95_m2 * kMm2;
-  out["mean_frequency_hz"] = sway.mean_frequency_hz;
+  for (const posturography::NamedMeasure& measure : posturography::Named(sway)) {
+    out[measure.key] = measure.value ? ordered_json(*measure.value) : ordered_json(nullptr);
+  }
+  out["ellipse95_definition"] = posturography::kEllipseDefinition;
+  out["spectrum_definition"] = posturography::kSpectrumDefinition;
+  out["sample_entropy_definition"] = posturography::kEntropyDefinition;
 }
 
 Result<ordered_json> Evaluate(const Options& options) {
   const bool corners = !options.corners.empty();
   const std::string& file = corners ? options.corners : options.cop;
-  const Result<CopFilter> filter = CopFilterOf(options.filter, corners);
+  const auto filter = posturography::CopFilterOf(options.filter, corners);
   if (!filter) return filter.error();
   Result<Input> input = corners ? ReadCorners(options) : ReadCop(options);
   if (!input) return input.error();
   AppendGaps(*input);
-  const auto filtered = FilterCop(*filter, input->stretches, input->head);
-  if (!filtered) return filtered.error();
+  const auto rate_hz = FilterCop(*filter, *input);
+  if (!rate_hz) return rate_hz.error();
   if (filter->rate_hz <= 0) {
     input->warnings.push_back(
         "the COP is not filtered: noise and uneven sampling make the path longer");
   }
   std::size_t samples = 0;
   for (const auto& stretch : input->stretches) samples += stretch.size();
-  const double duration_s = DurationS(input->stretches);
+  const double duration_s = posturography::DurationS(input->stretches);
   if (samples < 3 || duration_s <= 0) {
     return InvalidData(file + ": measures of sway need 3 samples of a COP over some time; it has " +
                        std::to_string(samples));
@@ -211,7 +210,7 @@ Result<ordered_json> Evaluate(const Options& options) {
                        " s to be comparable; record longer, or accept less with --min-seconds");
   }
   ordered_json out = std::move(input->head);
-  Append(posturography::Measure(input->stretches), out);
+  Append(posturography::Measure(input->stretches, *rate_hz), out);
   out["warnings"] = input->warnings;
   return out;
 }
@@ -264,117 +263,6 @@ void AddBoardCommand(CLI::App& app, Shared& shared) {
     }
     shared.exit_code = PrintResult(Evaluate(*options), shared.json);
   });
-}
-
-namespace {
-
-/// Advice of posturography: at least 50 Hz, and a low-pass at 10 Hz (Ruhe A et al., The
-/// test-retest reliability of centre of pressure measures in bipedal static task conditions, Gait &
-/// Posture 32(4), 2010; Scoppa F et al., Clinical stabilometry standardization, Gait & Posture
-/// 37(2), 2013).
-constexpr double kUsualRateHz = 50;
-constexpr double kUsualCutoffHz = 10;
-/// Above this share of the rate the low-pass leaves the signal as it is (motion::LowPass).
-constexpr double kHighestCutoffOfRate = 0.36;
-constexpr double kLowestRateHz = 1;
-constexpr double kLowestCutoffHz = 0.1;
-constexpr double kHighestHz = 1000;
-/// 55 hours at 100 Hz: a guard against times in another unit.
-constexpr double kMostResampled = 2e7;
-
-constexpr const char* kAsRecorded = "recorded";
-constexpr const char* kNone = "none";
-
-struct FrequencyOption {
-  const char* name;
-  const std::string& text;
-  const char* off;  ///< The word for no such filter.
-  double lowest_hz;
-};
-
-/// The option in Hz, 0 where it is off, or `usual_hz` where it is not given.
-Result<double> FrequencyOf(const FrequencyOption& option, double usual_hz) {
-  if (option.text.empty()) return usual_hz;
-  if (option.text == option.off) return 0.0;
-  const auto hz = text::ToNumber(option.text);
-  if (hz && *hz >= option.lowest_hz && *hz <= kHighestHz) return *hz;
-  return UsageError(std::string(option.name) + " " + option.text + ": give " +
-                    text::Shortest(option.lowest_hz) + " to 1000 Hz, or " + option.off);
-}
-
-void LowPass(const CopFilter& filter, std::vector<posturography::CopSample>& stretch) {
-  Eigen::MatrixXd signal(2, static_cast<Eigen::Index>(stretch.size()));
-  for (std::size_t i = 0; i < stretch.size(); ++i) {
-    signal.col(static_cast<Eigen::Index>(i)) << stretch[i].x_m, stretch[i].y_m;
-  }
-  signal = motion::LowPass(signal, filter.rate_hz, filter.cutoff_hz);
-  for (std::size_t i = 0; i < stretch.size(); ++i) {
-    stretch[i].x_m = signal(0, static_cast<Eigen::Index>(i));
-    stretch[i].y_m = signal(1, static_cast<Eigen::Index>(i));
-  }
-}
-
-}  // namespace
-
-Result<CopFilter> CopFilterOf(const CopFilterOptions& words, bool corners) {
-  const auto rate_hz = FrequencyOf({"--rate-hz", words.rate, kAsRecorded, kLowestRateHz},
-                                   corners ? kUsualRateHz : 0);
-  if (!rate_hz) return rate_hz.error();
-  const double highest_hz = kHighestCutoffOfRate * *rate_hz;
-  const double usual_hz = corners && kUsualCutoffHz <= highest_hz ? kUsualCutoffHz : 0;
-  const auto cutoff_hz =
-      FrequencyOf({"--cutoff-hz", words.cutoff, kNone, kLowestCutoffHz}, usual_hz);
-  if (!cutoff_hz) return cutoff_hz.error();
-  if (*cutoff_hz > 0 && *rate_hz <= 0) {
-    return UsageError("--cutoff-hz needs an even rate: give --rate-hz HZ");
-  }
-  if (words.window_s > 0 && *rate_hz <= 0) {
-    return UsageError("--window-s is the window of --rate-hz HZ: give one");
-  }
-  if (*cutoff_hz > highest_hz) {
-    return UsageError("--cutoff-hz " + words.cutoff + " is above 0.36 of the rate of " +
-                      std::to_string(std::lround(*rate_hz)) + " Hz: lower it, or raise --rate-hz");
-  }
-  return CopFilter{*rate_hz, *cutoff_hz, words.window_s};
-}
-
-double DurationS(const posturography::Stretches& stretches) {
-  double duration_s = 0;
-  for (const auto& stretch : stretches) {
-    duration_s += stretch.back().time_s - stretch.front().time_s;
-  }
-  return duration_s;
-}
-
-Result<void> FilterCop(const CopFilter& filter, posturography::Stretches& stretches,
-                       ordered_json& answer) {
-  const double median_s = posturography::MedianInterval(stretches);
-  answer["recorded_rate_hz"] = median_s > 0 ? 1 / median_s : 0.0;
-  if (filter.rate_hz <= 0) {
-    answer["filter"] = kNone;
-    answer["rate_hz"] = nullptr;
-    answer["cutoff_hz"] = nullptr;
-    return {};
-  }
-  const double duration_s = DurationS(stretches);
-  if (duration_s * filter.rate_hz > kMostResampled) {
-    return InvalidData("the recording lasts " + std::to_string(duration_s) +
-                       " s, too long for --rate-hz; is its time in seconds?");
-  }
-  const double window_s =
-      filter.window_s > 0 ? filter.window_s : std::max(2 / filter.rate_hz, 2 * median_s);
-  for (std::vector<posturography::CopSample>& stretch : stretches) {
-    stretch = posturography::Resample(stretch, filter.rate_hz, window_s);
-    if (filter.cutoff_hz > 0) LowPass(filter, stretch);
-  }
-  std::string name = "SWARII window average (Audiffren & Contal 2016)";
-  if (filter.cutoff_hz > 0) name += ", then Butterworth low-pass of 4th order without lag";
-  answer["filter"] = name;
-  answer["filter_window_s"] = window_s;
-  answer["rate_hz"] = filter.rate_hz;
-  answer["cutoff_hz"] =
-      filter.cutoff_hz > 0 ? ordered_json(filter.cutoff_hz) : ordered_json(nullptr);
-  return {};
 }
 
 namespace {

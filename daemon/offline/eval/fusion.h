@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/result.h"
+#include "common/plot/line_plot.h"
 #include "common/stream/hands.h"
-#include "daemon/offline/analysis/line_plot.h"
 #include "daemon/offline/analysis/pose_metrics.h"
 #include "daemon/offline/eval/report.h"
 #include "daemon/offline/pose_run/pose_run.h"

@@ -14,8 +14,8 @@
 
 #include "common/base/units.h"
 #include "common/body/kinematics.h"
+#include "common/plot/line_plot.h"
 #include "daemon/offline/analysis/leg_gap.h"
-#include "daemon/offline/analysis/line_plot.h"
 #include "daemon/offline/eval/pose_trial.h"
 #include "daemon/offline/eval/report.h"
 #include "daemon/offline/pose_run/pose_run.h"

@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/json_text.h"
+#include "common/base/low_pass.h"
 #include "common/base/units.h"
 #include "common/cli/cli.h"
 #include "common/virtual/devices/board_cells.h"
-#include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/standard_layout.h"
 #include "daemon/offline/analysis/pose_metrics.h"
 #include "daemon/offline/eval/gait_trial.h"
@@ -269,7 +269,7 @@ ordered_json ConstantVelocity(const pose_run::PoseRun& simulated, std::size_t st
   for (Eigen::Index i = 0; i < count; ++i)
     com.col(i) = simulated.frames[start + static_cast<std::size_t>(i)].com_m;
   const double rate = simulated.rate_hz;
-  const Eigen::MatrixXd smooth = motion::LowPass(com, rate, kPoseCutoffHz);
+  const Eigen::MatrixXd smooth = LowPass(com, rate, kPoseCutoffHz);
   const Eigen::MatrixXd velocity = virtual_sensors::Derivative(smooth, rate);
   const Eigen::MatrixXd acceleration = virtual_sensors::Derivative(velocity, rate);
   ordered_json out = {

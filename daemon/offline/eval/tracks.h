@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "common/plot/line_plot.h"
 #include "common/stream/character.h"
-#include "daemon/offline/analysis/line_plot.h"
 #include "daemon/offline/eval/report.h"
 
 namespace footing::eval {

@@ -6,11 +6,11 @@
 #include <sstream>
 #include <vector>
 
+#include "common/base/low_pass.h"
 #include "common/base/result.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/body/kinematics.h"
-#include "common/virtual/motion/edit.h"
 
 namespace footing::learning {
 namespace {
@@ -42,7 +42,7 @@ bool ComesDown(const ForceTrace& trace, Eigen::Index peak) {
 Eigen::VectorXd ForceTrace::Total(double cutoff_hz) const {
   FOOTING_CHECK(weight_n > 0);
   const Eigen::MatrixXd total = load_n.colwise().sum() / weight_n;
-  return motion::LowPass(total, rate_hz, cutoff_hz).row(0);
+  return LowPass(total, rate_hz, cutoff_hz).row(0);
 }
 
 std::vector<Stomp> FindStomps(const ForceTrace& trace) {

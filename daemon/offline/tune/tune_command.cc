@@ -16,9 +16,9 @@
 #include "common/base/json_text.h"
 #include "common/base/units.h"
 #include "common/cli/cli.h"
+#include "common/plot/line_plot.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/files.h"
-#include "daemon/offline/analysis/line_plot.h"
 #include "daemon/offline/tune/team.h"
 #include "daemon/simulation/gait_service/config.h"
 

@@ -1,4 +1,4 @@
-#include "daemon/offline/analysis/line_plot.h"
+#include "common/plot/line_plot.h"
 
 #include <algorithm>
 #include <charconv>
@@ -67,8 +67,6 @@ std::string StickPlot(const std::string& title, const std::vector<Panel>& panels
   return svg + "</svg>\n";
 }
 
-namespace {
-
 std::string Escaped(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -76,8 +74,6 @@ std::string Escaped(const std::string& text) {
   }
   return escaped;
 }
-
-}  // namespace
 
 std::string Number(double value) {
   std::array<char, 32> text{};

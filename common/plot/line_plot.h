@@ -29,6 +29,9 @@ inline constexpr const char* kReferenceColour = "#222";
 /// A number as text, with six significant digits.
 std::string Number(double value);
 
+/// With the characters that SVG and HTML give a meaning escaped.
+std::string Escaped(const std::string& text);
+
 /// The opening of an SVG of this size, white.
 std::string Open(double width, double height);
 

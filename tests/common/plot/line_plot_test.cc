@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/offline/analysis/line_plot.h"
+#include "common/plot/line_plot.h"
 
 namespace footing::plot {
 namespace {
