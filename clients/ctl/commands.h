@@ -63,6 +63,7 @@ void AddInterfaceCommand(CLI::App& app, Shared& shared);   ///< interface
 void AddLeaseCommand(CLI::App& app, Shared& shared);       ///< lease
 void AddSessionsCommand(CLI::App& app, Shared& shared);    ///< sessions
 void AddMarkCommand(CLI::App& app, Shared& shared);        ///< mark
+void AddSwayCommand(CLI::App& app, Shared& shared);        ///< sway
 void AddTrustCommand(CLI::App& app, Shared& shared);       ///< trust
 void AddConfigCommand(CLI::App& app, Shared& shared);      ///< config
 void AddDiscoverCommand(CLI::App& app, Shared& shared);    ///< discover

@@ -37,14 +37,6 @@ std::vector<std::string> Adapters() {
   return adapters;
 }
 
-bool EnterPressed() {
-  pollfd in{STDIN_FILENO, POLLIN, 0};
-  if (isatty(STDIN_FILENO) != 1 || poll(&in, 1, 0) <= 0) return false;
-  std::string line;
-  std::getline(std::cin, line);
-  return true;
-}
-
 v1::Command CommandOf(const guide::Action& action, const std::string& rig) {
   v1::Command command;
   switch (action.kind) {
@@ -189,6 +181,14 @@ Result<void> Record(Connection& session, const std::string& rig, const stream::S
 }
 
 }  // namespace
+
+bool EnterPressed() {
+  pollfd in{STDIN_FILENO, POLLIN, 0};
+  if (isatty(STDIN_FILENO) != 1 || poll(&in, 1, 0) <= 0) return false;
+  std::string line;
+  std::getline(std::cin, line);
+  return true;
+}
 
 const std::vector<std::string>& GuidedChannels() {
   static const std::vector<std::string> channels{"status", "setup", "motion", "boards", "hands"};

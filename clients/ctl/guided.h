@@ -15,6 +15,9 @@ struct PromptOptions {
   bool script = false;  ///< Lines "PROMPT: ..." and "DONE: ..." only, and nobody presses Enter.
 };
 
+/// Whether Enter was pressed on the terminal since the last call; never where there is none.
+bool EnterPressed();
+
 /// The channels that a guided command needs.
 const std::vector<std::string>& GuidedChannels();
 

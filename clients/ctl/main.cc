@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
       "  footing-ctl doctor              # faults and their remedies\n"
       "  footing-ctl watch               # live values\n"
       "  footing-ctl led left_hand 1010\n"
-      "  footing-ctl mark \"stimulus on\" # an event in every recording");
+      "  footing-ctl mark \"stimulus on\" # an event in every recording\n"
+      "  footing-ctl sway --subject P01  # quiet standing: measures and a report");
   footing::ctl::Shared shared;
   app->add_option("--connect", shared.connect,
                   "Address of footingd, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default: "
@@ -33,6 +34,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddLeaseCommand(*app, shared);
   footing::ctl::AddSessionsCommand(*app, shared);
   footing::ctl::AddMarkCommand(*app, shared);
+  footing::ctl::AddSwayCommand(*app, shared);
   footing::ctl::AddTrustCommand(*app, shared);
   footing::ctl::AddDiscoverCommand(*app, shared);
   footing::ctl::AddConfigCommand(*app, shared);

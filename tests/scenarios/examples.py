@@ -31,7 +31,7 @@ SECONDS_TO_WATCH = 3
 SECONDS_TO_STOP = 60
 # A pattern of commands, and why they cannot run here.
 NOT_HERE = {
-    r"^footing-ctl (pair|setup|assign|acceptance|tare|layout .*--check)": "asks a person; scenarios setup_* run them",
+    r"^footing-ctl (pair|setup|assign|acceptance|sway|tare|layout .*--check)": "asks a person; scenarios setup_* and scenarios.sway run them",
     r"--calibrate-camera": "asks a person; tests/clients/view/pose_calibration_test.cc has one",
     r"layout --preset single|stand/footingd_boards": "needs one board alone, with a person on it",
     r"^footing-ctl led (00:|head)": "needs that device",

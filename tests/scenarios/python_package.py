@@ -128,7 +128,12 @@ def check_recording(stage, path):
         if numpy:
             even = recording.array("boards", ["cop_x_m", "cop_y_m"], rate_hz=50, role="left_board")
             assert abs(numpy.hypot(*even[50:-50].T).mean() / RADIUS_M - 1) < 0.05, even
-            check_sway(output_of(start_example("sway.py", path)), None)
+            line = output_of(start_example("sway.py", path))
+            check_sway(line, None)
+            board = stage.run_json("footing-eval", "board", "--corners", stage.folder / "csv" / "footingd_boards.csv",
+                                   "--board", "left_board", "--min-seconds", "1")
+            for value, name in zip(re.findall(r"([\d.]+) mm", line), ("path_length_mm", "mean_velocity_mm_s", "ellipse95_area_mm2")):
+                assert abs(float(value) / board[name] - 1) < 0.01, (line, board)
             rows = output_of(start_example("compare_recordings.py", path, path)).splitlines()
             assert len(rows) == 6 and all(row.endswith("+0.000") for row in rows), rows
             out = output_of(start_example("matlab_bridge.py", path, "boards", "left_board", "cop_x_m"))

@@ -51,7 +51,7 @@ def check_without_footingd(stage):
 
 def check_help(stage):
     for command in ("devices", "status", "watch", "rumble", "led", "tare", "assign", "doctor", "pair",
-                    "setup", "layout", "acceptance", "trust", "sessions"):
+                    "setup", "layout", "acceptance", "sway", "trust", "sessions"):
         done = stage.run("footing-ctl", command, "--help")
         assert done.returncode == 0 and "Example" in done.stdout, (command, done)
 
