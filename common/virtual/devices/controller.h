@@ -153,7 +153,8 @@ enum class SerialOf {
   kWiimote = 0x52,
   kBalanceBoard = 0x56,
   kPsMove = 0x5a,
-  kProController = 0x5e
+  kProController = 0x5e,
+  kJoycon = 0x62
 };
 
 /// A Bluetooth address drawn from the seed.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "common/base/units.h"
 
@@ -55,6 +56,10 @@ LinkConfig BoardLink(LinkQuality quality, std::uint64_t seed) {
   return {quality, 60, kRecordedGoodHz, seed};
 }
 
+LinkConfig JoyconLink(LinkQuality quality, std::uint64_t seed) {
+  return {quality, 1 / 0.015, kRecordedGoodHz, seed, true};
+}
+
 LinkModel::LinkModel(const LinkConfig& config, std::int64_t start_ns)
     : config_(config), random_(config.seed), start_ns_(start_ns), last_ns_(start_ns) {}
 
@@ -74,17 +79,34 @@ double LinkModel::DrawOutage(double interval_s) {
 LinkModel::Arrival LinkModel::Next() {
   const double period_s = 1 / config_.sensor_rate_hz;
   if (config_.quality == LinkQuality::kIdeal) {
-    ++ideal_count_;
-    const double at_s = static_cast<double>(ideal_count_) * period_s;
+    ++count_;
+    const double at_s = static_cast<double>(count_) * period_s;
     const std::int64_t at_ns = start_ns_ + RoundToNanoseconds(at_s);
     return {at_ns, at_ns};
   }
+  if (config_.queues) return NextQueued();
   double interval_s = DrawInterval();
   if (config_.quality == LinkQuality::kPoor) interval_s += DrawOutage(interval_s);
   last_ns_ += RoundToNanoseconds(interval_s);
   const double since_s = NanosecondsToSeconds(last_ns_ - start_ns_);
   const std::int64_t held_ns = RoundToNanoseconds(std::floor(since_s / period_s) * period_s);
   return {last_ns_, std::min(last_ns_, start_ns_ + held_ns)};
+}
+
+LinkModel::Arrival LinkModel::NextQueued() {
+  std::int64_t made_ns = 0;
+  do {
+    ++count_;
+    made_ns = start_ns_ + RoundToNanoseconds(static_cast<double>(count_) / config_.sensor_rate_hz);
+    while (last_ns_ < made_ns) {
+      const double interval_s = DrawInterval();
+      const double outage_s = config_.quality == LinkQuality::kPoor ? DrawOutage(interval_s) : 0;
+      last_ns_ += RoundToNanoseconds(interval_s + outage_s);
+      if (outage_s > 0) lost_until_ns_ = last_ns_ - RoundToNanoseconds(interval_s);
+    }
+  } while (made_ns < lost_until_ns_);
+  constexpr std::int64_t kTogetherNs = 1'000;  // Later reports of one turn.
+  return {std::exchange(last_ns_, last_ns_ + kTogetherNs), made_ns};
 }
 
 }  // namespace footing::virtual_devices

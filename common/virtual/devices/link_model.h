@@ -19,12 +19,15 @@ struct LinkConfig {
   double sensor_rate_hz = 100;   ///< How often the device's sensor takes a new sample.
   double nominal_rate_hz = 100;  ///< Rate of reports on a good link.
   std::uint64_t seed = 1;
+  bool queues = false;  ///< Every sample is a report of its own and waits for the radio.
 };
 
 /// 100 new samples and 100 reports a second.
 LinkConfig WiimoteLink(LinkQuality quality, std::uint64_t seed);
 /// 60 new samples and 83.6 reports a second, as recorded.
 LinkConfig BoardLink(LinkQuality quality, std::uint64_t seed);
+/// A report every 15 ms, each sent once; the radio's turn comes 83.6 times a second.
+LinkConfig JoyconLink(LinkQuality quality, std::uint64_t seed);
 
 /// When reports arrive over Bluetooth, and how old the sample in each is.
 ///
@@ -33,7 +36,8 @@ LinkConfig BoardLink(LinkQuality quality, std::uint64_t seed);
 /// drawn from the quantiles of two real recordings of a Balance Board (39 s on a good link, 18 min
 /// on a poor one), scaled to the nominal rate. Order is kept: Bluetooth never changes it. A poor
 /// link has outages besides: about one in two minutes, exponential in length with mean 1 s, 0.1 s
-/// to 20 s; their samples are lost. An ideal link delivers every sample at once.
+/// to 20 s; their samples are lost. An ideal link delivers every sample at once. A
+/// device that queues has each sample sent once, in order, at the radio's next turn.
 class LinkModel {
  public:
   LinkModel(const LinkConfig& config, std::int64_t start_ns);
@@ -46,6 +50,7 @@ class LinkModel {
   Arrival Next();
 
  private:
+  Arrival NextQueued();
   double DrawInterval();
   double DrawOutage(double interval_s);
 
@@ -53,7 +58,8 @@ class LinkModel {
   noise::Random random_;
   std::int64_t start_ns_;
   std::int64_t last_ns_;
-  std::uint64_t ideal_count_ = 0;
+  std::uint64_t count_ = 0;  ///< Samples so far, on a link that sends each.
+  std::int64_t lost_until_ns_ = 0;
 };
 
 }  // namespace footing::virtual_devices

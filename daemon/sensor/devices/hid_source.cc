@@ -28,11 +28,15 @@ constexpr int kReadTimeoutMs = 15;
 // bunched up is spread again; were this the slower of the two, a flood would fill the queue between
 // them and its newest, the one that counts, would be refused.
 constexpr std::int64_t kWriteIntervalNs = 9'000'000;
+constexpr std::int64_t kSwitchWriteIntervalNs = 24'000'000;  // There the outbox's is 25 ms.
 
 }  // namespace
 
-HidReader::HidReader(HidHandle device, std::function<void()> wake)
-    : device_(std::move(device)), wake_(std::move(wake)), thread_([this] { Run(); }) {}
+HidReader::HidReader(HidHandle device, std::int64_t write_interval_ns, std::function<void()> wake)
+    : device_(std::move(device)),
+      write_interval_ns_(write_interval_ns),
+      wake_(std::move(wake)),
+      thread_([this] { Run(); }) {}
 
 HidReader::~HidReader() {
   stop_.Raise();
@@ -69,7 +73,7 @@ void HidReader::Run() {
 
 void HidReader::WriteOne() {
   if (next_.empty() && !outgoing_.Pop(next_)) return;
-  if (clock::MonotonicNs() - written_ns_ < kWriteIntervalNs) return;
+  if (clock::MonotonicNs() - written_ns_ < write_interval_ns_) return;
   Write(next_);
   next_.clear();
 }
@@ -77,7 +81,7 @@ void HidReader::WriteOne() {
 /// Until a report comes, or the next one may be written.
 int HidReader::TimeoutMs() const {
   if (next_.empty()) return kReadTimeoutMs;
-  const std::int64_t left_ns = written_ns_ + kWriteIntervalNs - clock::MonotonicNs();
+  const std::int64_t left_ns = written_ns_ + write_interval_ns_ - clock::MonotonicNs();
   return static_cast<int>(std::clamp<std::int64_t>(left_ns / 1'000'000 + 1, 0, kReadTimeoutMs));
 }
 
@@ -86,7 +90,7 @@ void HidReader::WriteLast() {
   std::vector<std::uint8_t> report, last = std::move(next_);
   while (outgoing_.Pop(report)) last = report;
   if (last.empty()) return;
-  clock::SleepUntil(written_ns_ + kWriteIntervalNs);
+  clock::SleepUntil(written_ns_ + write_interval_ns_);
   Write(last);
 }
 
@@ -204,8 +208,12 @@ void HidSearch::Look(std::int64_t now_ns) {
   }
   std::set<std::string> seen;
   for (const HidNode& node : monitor_.Nodes()) {
-    if (!stream::IsKnownDevice(node.vendor, node.product) || open_paths_.contains(node.path))
+    // On its cable a controller of the Switch speaks another protocol.
+    const bool other = node.bus == Bus::kUsb && stream::IsOfSwitch(node.vendor, node.product);
+    if (other || !stream::IsKnownDevice(node.vendor, node.product) ||
+        open_paths_.contains(node.path)) {
       continue;
+    }
     seen.insert(node.path);
     Open(node, now_ns);
   }
@@ -327,8 +335,12 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
         continue;
       }
       const DeviceHandle device = new_handle_();
-      readers_[device] = {found.identity.place,
-                          std::make_unique<HidReader>(std::move(found.device), [this] { Wake(); })};
+      const bool of_switch = stream::IsOfSwitch(found.identity.vendor, found.identity.product);
+      readers_[device] = {
+          found.identity.place,
+          std::make_unique<HidReader>(std::move(found.device),
+                                      of_switch ? kSwitchWriteIntervalNs : kWriteIntervalNs,
+                                      [this] { Wake(); })};
       handlers_.on_attach(device, found.identity);  // It may send at once.
     }
     HidReader::Item item;

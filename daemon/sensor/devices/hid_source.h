@@ -18,7 +18,8 @@
 namespace footing::devices {
 
 /// One open device and the one thread that reads it, stamps what it reads and writes what is to be
-/// written, at most one report per 9 ms. hidapi's handle is never shared by two threads.
+/// written, at most one report per `write_interval_ns`. hidapi's handle is never shared by two
+/// threads.
 class HidReader {
  public:
   /// The kernel waits up to 10 s for a Bluetooth device to acknowledge a report.
@@ -33,7 +34,7 @@ class HidReader {
   };
 
   /// `wake` is called on the reader's thread when there is something to pop, or when it ended.
-  HidReader(HidHandle device, std::function<void()> wake);
+  HidReader(HidHandle device, std::int64_t write_interval_ns, std::function<void()> wake);
   /// Ends the thread, at most 25 ms; the newest report that waits is still written.
   ~HidReader();
   HidReader(const HidReader&) = delete;
@@ -70,6 +71,7 @@ class HidReader {
   void ReadFeatures();
 
   HidHandle device_;
+  std::int64_t write_interval_ns_;
   std::vector<std::uint8_t> next_;  ///< Taken from outgoing_ and not due yet; empty: none.
   std::int64_t written_ns_ = 0;
   std::uint64_t writes_failed_ = 0;

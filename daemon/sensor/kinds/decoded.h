@@ -30,9 +30,15 @@ struct TimedMotion {
   std::int64_t sampled_ns = 0;
 };
 
+/// Time by a device's own clock.
+struct OwnTime {
+  double since_before_s = 0;  ///< Between the newest sample and that of the report before.
+  double spacing_s = 0;       ///< Between the samples of this report.
+};
+
 /// The samples of one report.
 struct Decoded {
-  std::array<stream::MotionSample, 2> motion{};  ///< Older first, evenly spaced over the report.
+  std::array<stream::MotionSample, 3> motion{};  ///< Older first, evenly spaced.
   std::size_t motion_count = 0;
   std::vector<TimedMotion> timed_motion;  ///< Instead of `motion`: oldest first.
   std::optional<BoardReading> board;
@@ -43,6 +49,8 @@ struct Decoded {
   bool buttons_only = false;
   /// The device took a new measurement: some sample differs from the report before.
   bool changed = false;
+  /// Of a device that sends it; without, the samples are spread over a typical report.
+  std::optional<OwnTime> own_time;
 
   bool empty() const {
     return motion_count == 0 && timed_motion.empty() && !board && !nunchuk && !gamepad && !camera;
@@ -76,12 +84,14 @@ enum class Placement {
   kOnBody,       ///< Worn or held: hands, legs, head.
   kUnderFeet,    ///< A board.
   kInBothHands,  ///< A gamepad: says nothing about the body.
+  kByChoice,     ///< A gamepad with motion sensors: on the body where it is given such a role.
 };
 
 /// Typical intervals of a kind, before they are estimated.
 struct Timing {
   double report_period_s = 0.01;
   double sensor_period_s = 0.01;
+  double max_lag_s = 0.025;  ///< Longest delay of a report that sample times allow for.
 };
 
 /// A feature report to ask a device for.

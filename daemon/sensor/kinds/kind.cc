@@ -1,6 +1,7 @@
 #include "daemon/sensor/kinds/kind.h"
 
 #include "daemon/sensor/kinds/inertial.h"
+#include "daemon/sensor/kinds/joycon.h"
 #include "daemon/sensor/kinds/ps_move.h"
 #include "daemon/sensor/kinds/wiimote_protocol.h"
 
@@ -14,6 +15,7 @@ std::unique_ptr<Kind> MakeKind(const decode::KindOptions& options, const decode:
   if (inertial::InertialSensor::Matches(product)) {
     return std::make_unique<inertial::InertialSensor>();
   }
+  if (joycon::Joycon::Matches(product)) return std::make_unique<joycon::Joycon>(product);
   return std::make_unique<WiimoteProtocol>(options, product);
 }
 

@@ -29,6 +29,8 @@ class Kind {
   virtual decode::Placement placement() const = 0;
   /// Typical intervals, before they are estimated.
   virtual decode::Timing timing() const = 0;
+  /// The role that it gets of itself while that is free; else the first free one.
+  virtual stream::DeviceRole own_role() const { return stream::DeviceRole::kUnspecified; }
   /// Samples may be published: kind and calibration are settled.
   virtual bool live() const = 0;
 
@@ -40,6 +42,8 @@ class Kind {
   /// be sent.
   virtual std::optional<decode::Decoded> Take(std::int64_t received_ns, reports::Bytes report,
                                               Outputs& outputs) = 0;
+  /// How it is written to.
+  virtual link::Writing writing() const { return {}; }
   /// The next report to write, if one is due.
   virtual std::optional<reports::OutputReport> NextOutput(std::int64_t now_ns,
                                                           link::Outbox& outbox) {
@@ -61,7 +65,11 @@ class Kind {
 
   /// The handshake of a device that speaks the Wiimote's protocol; else null.
   virtual const handshake::HandshakeSequencer* sequencer() const { return nullptr; }
-  bool has_lamps() const { return sequencer() != nullptr; }
+  virtual bool has_lamps() const { return sequencer() != nullptr; }
+  /// Lights lamps, bits 0 to 3; appends the reports to be sent.
+  virtual void SetLamps(std::uint8_t leds, Outputs& outputs) {
+    if (has_lamps()) outputs.push_back(reports::SetLeds(leds));
+  }
 
   /// Fills in the kind's part of the status.
   virtual void AddTo(stream::DeviceStatus& status) const { status.kind = kind(); }

@@ -200,11 +200,12 @@ SampleTicksConfig TicksOf(const DeviceClockConfig& config) {
 DeviceClock::DeviceClock(const DeviceClockConfig& config)
     : config_(config), ticks_(TicksOf(config)), period_s_(config.nominal_period_s) {}
 
-std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed) {
+std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed,
+                                  std::optional<double> elapsed_s) {
   // A clock that went back, which none should, restarts everything.
   if (started_ && received_ns < received_ns_) *this = Restarted();
-  AdvanceLoop(received_ns);
-  ticks_.Add(received_ns, changed);
+  AdvanceLoop(received_ns, elapsed_s ? *elapsed_s / config_.nominal_period_s : 1);
+  if (!elapsed_s) ticks_.Add(received_ns, changed);
   std::int64_t estimate_ns = loop_ns_;
   if (ticks_.known()) {
     estimate_ns = ticks_.TickBefore(received_ns);
@@ -238,7 +239,8 @@ DeviceClock DeviceClock::Restarted() const {
   return clock;
 }
 
-void DeviceClock::AdvanceLoop(std::int64_t received_ns) {
+/// `periods`: nominal ones since the report before, by the device's clock.
+void DeviceClock::AdvanceLoop(std::int64_t received_ns, double periods) {
   const std::int64_t pause_ns = received_ns - received_ns_;
   received_ns_ = received_ns;
   if (!started_ || pause_ns > RoundToNanoseconds(config_.restart_s)) {
@@ -248,7 +250,7 @@ void DeviceClock::AdvanceLoop(std::int64_t received_ns) {
     loop_ns_ = received_ns;
     return;
   }
-  const std::int64_t predicted_ns = loop_ns_ + RoundToNanoseconds(period_s_);
+  const std::int64_t predicted_ns = loop_ns_ + RoundToNanoseconds(periods * period_s_);
   const double error_s = NanosecondsToSeconds(received_ns - predicted_ns);
   loop_steps_ = std::min(loop_steps_ + 1, kSteadySteps);
   loop_variance_s2_ +=

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 
 namespace footing::link {
 
@@ -107,8 +108,10 @@ class DeviceClock {
   explicit DeviceClock(const DeviceClockConfig& config = {});
 
   /// One report; returns its sampled_ns. `changed`: the sensor took a new sample since the report
-  /// before.
-  std::int64_t Advance(std::int64_t received_ns, bool changed = true);
+  /// before. `elapsed_s`: time since that report by the device's own clock, of a device that sends
+  /// it; without it reports are taken to be a period apart, and lost ones show in arrivals only.
+  std::int64_t Advance(std::int64_t received_ns, bool changed = true,
+                       std::optional<double> elapsed_s = {});
   /// Period of the sensor's samples, once its ticks are known; until then of the reports.
   double period_s() const { return ticks_.known() ? ticks_.period_s() : period_s_; }
   /// Whether the ticks of the sensor are known.
@@ -118,7 +121,7 @@ class DeviceClock {
   double sampled_sd_s() const;
 
  private:
-  void AdvanceLoop(std::int64_t received_ns);
+  void AdvanceLoop(std::int64_t received_ns, double periods);
   DeviceClock Restarted() const;
 
   DeviceClockConfig config_;

@@ -25,18 +25,25 @@ bool Outbox::Push(reports::OutputReport report) {
 
 void Outbox::SetRumble(bool on) { rumble_ = on; }
 
+bool Outbox::RumbleIsDue(std::int64_t since_ns) const {
+  if (written_ && since_ns < writing_.rumble_interval_ns) return false;
+  const bool repeats = rumble_ && writing_.rumble_repeat_ns > 0;
+  return rumble_ != rumble_sent_ || (repeats && since_ns >= writing_.rumble_repeat_ns);
+}
+
 std::optional<reports::OutputReport> Outbox::Next(std::int64_t now_ns) {
-  if (written_ && now_ns - written_ns_ < kIntervalNs) return std::nullopt;
+  const std::int64_t since_ns = now_ns - written_ns_;
+  if (written_ && since_ns < writing_.interval_ns) return std::nullopt;
   reports::OutputReport report;
   if (!waiting_.empty()) {
     report = std::move(waiting_.front());
     waiting_.pop_front();
-  } else if (rumble_ != rumble_sent_) {
-    report = reports::RumbleOnly();
+  } else if (RumbleIsDue(since_ns)) {
+    report = writing_.rumble_only();
   } else {
     return std::nullopt;
   }
-  reports::SetRumbleBit(report, rumble_);
+  writing_.set_rumble(report, rumble_);
   rumble_sent_ = rumble_;
   written_ = true;
   written_ns_ = now_ns;

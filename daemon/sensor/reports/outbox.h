@@ -8,12 +8,22 @@
 
 namespace footing::link {
 
-/// Reports that wait to be written to one device: at most one per 10 ms, since devices choke on
-/// more, and the one place that puts the rumble bit into every report.
+/// How a kind of device is written to; the defaults are a Wiimote's.
+struct Writing {
+  std::int64_t interval_ns = 10'000'000;         ///< Least time between two reports,
+  std::int64_t rumble_interval_ns = 10'000'000;  ///< and before one for the motor alone.
+  std::int64_t rumble_repeat_ns = 0;  ///< The motor stops unless told so often; 0: never.
+  reports::OutputReport (*rumble_only)() = reports::RumbleOnly;
+  void (*set_rumble)(reports::OutputReport& report, bool on) = reports::SetRumbleBit;
+};
+
+/// Reports that wait to be written to one device: at most one per interval, since devices choke on
+/// more, and the one place that puts the motor's state into every report.
 class Outbox {
  public:
-  static constexpr std::int64_t kIntervalNs = 10'000'000;
   static constexpr std::size_t kCapacity = 32;
+
+  explicit Outbox(const Writing& writing = {}) : writing_(writing) {}
 
   /// False when it is full.
   bool Push(reports::OutputReport report);
@@ -25,6 +35,9 @@ class Outbox {
   bool rumble() const { return rumble_; }
 
  private:
+  bool RumbleIsDue(std::int64_t since_ns) const;
+
+  Writing writing_;
   std::deque<reports::OutputReport> waiting_;
   bool rumble_ = false;
   bool rumble_sent_ = false;

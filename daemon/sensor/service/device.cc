@@ -28,6 +28,7 @@ std::span<const DeviceRole> RolesOf(Placement placement) {
     case Placement::kUnderFeet:
       return kBoardRoles;
     case Placement::kInBothHands:
+    case Placement::kByChoice:
       break;
   }
   return {};
@@ -115,13 +116,19 @@ void SampleTiming::Restart(const decode::Timing& timing) {
   link::DeviceClockConfig config;
   config.nominal_period_s = timing.report_period_s;
   config.sensor_period_s = timing.sensor_period_s;
+  config.max_lag_s = timing.max_lag_s;
   clock_ = link::DeviceClock(config);
   statistics_ = link::LinkStatistics(timing.report_period_s);
 }
 
-void SampleTiming::Take(std::int64_t received_ns, bool changed) {
+void SampleTiming::Take(std::int64_t received_ns, const decode::Decoded& decoded) {
+  const auto& own = decoded.own_time;
   statistics_.Advance(received_ns);
-  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(received_ns, changed));
+  const std::optional<double> elapsed_s = own ? std::optional(own->since_before_s) : std::nullopt;
+  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(received_ns, decoded.changed, elapsed_s));
+  const double count = static_cast<double>(std::max<std::size_t>(decoded.motion_count, 1));
+  spacing_ns_ =
+      static_cast<std::int64_t>((own ? own->spacing_s : timing_.report_period_s / count) * 1e9);
 }
 
 void SampleTiming::TakeTimed(std::int64_t received_ns, std::int64_t sampled_ns) {
@@ -129,9 +136,9 @@ void SampleTiming::TakeTimed(std::int64_t received_ns, std::int64_t sampled_ns) 
   sampled_ns_ = std::max(sampled_ns_, std::min(sampled_ns, received_ns));
 }
 
-std::int64_t SampleTiming::HalfEarlierNs(std::int64_t before_ns) const {
-  const auto half_ns = static_cast<std::int64_t>(timing_.report_period_s * 0.5e9);
-  return std::clamp(sampled_ns_ - half_ns, before_ns, sampled_ns_);
+std::int64_t SampleTiming::EarlierNs(std::size_t back, std::int64_t before_ns) const {
+  const std::int64_t earlier_ns = sampled_ns_ - static_cast<std::int64_t>(back) * spacing_ns_;
+  return std::clamp(earlier_ns, before_ns, sampled_ns_);
 }
 
 void Device::Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity,
@@ -161,7 +168,7 @@ void Device::ShowBinding() {
 /// Everything that belongs to one uninterrupted stream.
 void Device::Restart() {
   timing_.Restart(kind_->timing());
-  outbox_ = link::Outbox();
+  outbox_ = link::Outbox(kind_->writing());
   kind_->Restart();
   motion_ = MotionChain();
   chain_.Restart();
@@ -177,7 +184,8 @@ void Device::AttachSecond(devices::DeviceHandle handle, const devices::DeviceIde
 
 void Device::SetLeds(std::uint8_t leds) {
   leds_ = leds & 0x0f;
-  if (kind_->has_lamps()) outbox_.Push(reports::SetLeds(leds_));
+  kind_->SetLamps(leds_, outputs_);
+  PushOutputs();
 }
 
 void Device::PushOutputs() {
@@ -250,7 +258,7 @@ void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded&
   if (!HasSpace(content)) return;
   if (!decoded.timed_motion.empty()) return TakeTimedMotion(report, decoded, content);
   const std::int64_t before_ns = timing_.sampled_ns();
-  if (!decoded.buttons_only) timing_.Take(report.received_ns, decoded.changed);
+  if (!decoded.buttons_only) timing_.Take(report.received_ns, decoded);
   TakeMotion(report, decoded, before_ns, content);
   if (decoded.board) TakeBoard(report, *decoded.board, content);
   if (decoded.nunchuk) {
@@ -275,7 +283,9 @@ void Device::TakeMotion(const devices::IncomingReport& report, decode::Decoded& 
   for (std::size_t i = 0; i < decoded.motion_count; ++i) {
     stream::MotionSample& sample = decoded.motion[i];
     Stamp(report, sample);
-    if (i + 1 < decoded.motion_count) sample.sampled_ns = timing_.HalfEarlierNs(before_ns);
+    if (i + 1 < decoded.motion_count) {
+      sample.sampled_ns = timing_.EarlierNs(decoded.motion_count - 1 - i, before_ns);
+    }
     sample.report_count = timing_.statistics().reports();
     motion_.Take(sample, measured);
     counters_.repeats += sample.repeated && measured ? 1 : 0;

@@ -48,7 +48,7 @@ stream::DeviceRole FirstFreeRole(decode::Placement placement, const std::string&
 /// Hands, legs, head and trunk, whose devices have a mounting.
 bool IsOnBody(stream::DeviceRole role);
 
-/// A board cannot be a hand, nor a remote a board.
+/// A board cannot be a hand, nor a remote a board, nor a gamepad without sensors either.
 bool RoleFits(decode::Placement placement, stream::DeviceRole role);
 
 /// Where a device is attached: on one link, on two at once (a PS Move: Bluetooth carries the
@@ -88,15 +88,15 @@ class SampleTiming {
   /// A new uninterrupted stream begins.
   void Restart(const decode::Timing& timing);
 
-  /// A report with a new measurement or a repeated one (`changed` false).
-  void Take(std::int64_t received_ns, bool changed);
+  /// The samples of a report, new or repeated.
+  void Take(std::int64_t received_ns, const decode::Decoded& decoded);
   /// A report whose newest sample has a time of the device's own.
   void TakeTimed(std::int64_t received_ns, std::int64_t sampled_ns);
   /// Time of the newest sample; never goes back.
   std::int64_t sampled_ns() const { return sampled_ns_; }
-  /// Time of the older of two samples in the newest report, half a report earlier; `before_ns` is
-  /// the newest sample of the report before.
-  std::int64_t HalfEarlierNs(std::int64_t before_ns) const;
+  /// Time of the sample `back` before the newest of the newest report; `before_ns` is the newest
+  /// sample of the report before.
+  std::int64_t EarlierNs(std::size_t back, std::int64_t before_ns) const;
 
   /// How well sample times are known (link::DeviceClock::sampled_sd_s), s; negative: not yet.
   double sampled_sd_s() const { return clock_.sampled_sd_s(); }
@@ -107,6 +107,7 @@ class SampleTiming {
   link::DeviceClock clock_;
   link::LinkStatistics statistics_{0.01};
   std::int64_t sampled_ns_ = 0;
+  std::int64_t spacing_ns_ = 0;  ///< Between the samples of the newest report.
 };
 
 /// Everything that one tick publishes.
@@ -189,6 +190,7 @@ class Device {
   bool simulated() const { return identity().simulated; }
   stream::DeviceKind kind() const { return kind_->kind(); }
   decode::Placement placement() const { return kind_->placement(); }
+  stream::DeviceRole own_role() const { return kind_->own_role(); }
   bool has_second_link() const { return kind_->has_second_link(); }
   link::Outbox& outbox() { return outbox_; }
   void SetLeds(std::uint8_t leds);

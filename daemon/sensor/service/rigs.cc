@@ -137,8 +137,9 @@ Binding RoleAssignment::Choose(const Device& device, const DeviceTable& devices,
       is_free(before)) {
     return before;
   }
-  Binding wish = {identity.wished_rig.empty() ? default_rig : identity.wished_rig,
-                  identity.wished_role};
+  Binding wish = {
+      identity.wished_rig.empty() ? default_rig : identity.wished_rig,
+      identity.wished_role == DeviceRole::kUnspecified ? device.own_role() : identity.wished_role};
   if (wish.role == DeviceRole::kUnspecified || !RoleFits(device.placement(), wish.role) ||
       !is_free(wish)) {
     wish.role = FirstFreeRole(device.placement(), wish.rig, taken);
@@ -161,10 +162,9 @@ void RigTable::Rebuild(const DeviceTable& devices) {
   std::map<std::string, std::vector<features::Member>> members;
   for (const auto& device : devices) {
     const Binding& binding = device->binding();
-    if (device->placement() != decode::Placement::kOnBody ||
-        binding.role == DeviceRole::kUnspecified) {
-      continue;
-    }
+    const bool worn = device->placement() == decode::Placement::kOnBody ||
+                      device->placement() == decode::Placement::kByChoice;
+    if (!worn || binding.role == DeviceRole::kUnspecified) continue;
     auto& rig = members[binding.rig];
     const auto holder = std::find_if(rig.begin(), rig.end(), [&binding](const auto& member) {
       return member.role == binding.role;

@@ -53,7 +53,7 @@ Result<Device*> SetupKeeper::AttachedOnBody(const std::string& serial) const {
   auto found = devices_.Attached(serial);
   if (!found) return found;
   const Device& device = **found;
-  if (device.placement() != Placement::kOnBody || !IsOnBody(device.binding().role)) {
+  if (!IsOnBody(device.binding().role)) {
     return UsageError(
         serial + " is " + ToText(device.binding()) +
         "; only devices on hands, legs, head and trunk have a mounting (footing-ctl assign)");
