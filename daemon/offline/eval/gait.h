@@ -85,4 +85,7 @@ class GaitStatistics {
 /// `monkey`: a random gait, speed, height and turn every 0.5 to 4 s.
 void AddMonkeyCommand(CLI::App& app, Shared& shared);
 
+/// `style`: how settled gaits move over speed (style.cc).
+void AddStyleCommand(CLI::App& app, Shared& shared);
+
 }  // namespace footing::eval

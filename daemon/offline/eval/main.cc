@@ -29,6 +29,7 @@ constexpr char kExamples[] =
     "  footing-eval clock --link poor --json\n"
     "  footing-eval gait --gait walk --speed 1 --seconds 60 --trials 1 --seed 1 --json\n"
     "  footing-eval transitions --from walk --to run --trials 20 --seed 1 --json\n"
+    "  footing-eval style --gait walk --speeds 0.5,1.2 --json\n"
     "  footing-eval monkey --seconds 60 --trials 2 --seed 1 --json\n"
     "  footing-eval tracks --interface wrist --track straight --trials 2 --seed 1 --json\n"
     "  footing-eval plan straight 1 --out tracks.svg\n"
@@ -65,6 +66,7 @@ void AddCommands(CLI::App& app, footing::eval::Shared& shared) {
   AddSpheresCommand(app, shared);
   AddSpiralsCommand(app, shared);
   AddStatsCommand(app, shared);
+  AddStyleCommand(app, shared);
   AddTracksCommand(app, shared);
   AddTransitionsCommand(app, shared);
 }
