@@ -221,6 +221,7 @@ class LiveSway {
         if (Attempt(trial)) break;
       }
     }
+    connection_.RunFor(2 * kSwayStepS);  // The ticks with the last markers.
     connection_.set_on_tick({});
     Keep(recorder_.OnEnd({}, clock::MonotonicNs()));
     Keep(writer_.Finish());

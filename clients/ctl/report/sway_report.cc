@@ -470,8 +470,8 @@ std::string Ellipse(const posturography::Sway& sway, double middle_x, double mid
 /// An SVG of this size on the page.
 std::string OpenMm(double width, double height) {
   std::string svg = plot::Open(width, height);
-  return svg.insert(svg.find(" viewBox"), " style='width:" + plot::Number(width) +
-                                              "mm;height:" + plot::Number(height) + "mm'");
+  return svg.insert(svg.find(" viewBox"), " style='width:" + plot::Number(width) + "mm;height:" +
+                                              plot::Number(height) + "mm;overflow:visible'");
 }
 
 std::string Stabilogram(const Curve& curve, double reach_mm, double side) {
