@@ -84,8 +84,9 @@ void AddWiimotes(const std::shared_ptr<const Stage>& stage, const std::string& h
                  const Common& common, virtual_devices::LinkQuality link, Plan& plan) {
   const auto add = [&](DeviceRole role, const auto& motion_of) {
     const std::uint64_t device = plan.devices.size() + 1;
-    plan.devices.push_back(MakeWiimote(common, link, device, role,
-                                       motion_of(DeviceSeed(common, device) + 700), {true, false}));
+    plan.devices.push_back(MakeRemote(common, link, device, role,
+                                      motion_of(DeviceSeed(common, device) + 700),
+                                      {HeldKind::kWiimote, true, false}));
   };
   for (const int side : {0, 1}) {
     const auto role = [side](DeviceRole left, DeviceRole right) {

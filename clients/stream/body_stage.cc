@@ -288,8 +288,8 @@ Result<SetupPersonPlan> PlanSetupPerson(const SetupPersonOptions& options, const
       return sensors;
     };
     const DeviceRole role = planned.body->Role(remotes == 2 ? side_asked(side) : side);
-    planned.plan.devices.push_back(MakeWiimote(common, *link, static_cast<std::uint64_t>(side) + 3,
-                                               role, feels, {.nunchuk = joystick}));
+    planned.plan.devices.push_back(MakeRemote(common, *link, static_cast<std::uint64_t>(side) + 3,
+                                              role, feels, {.nunchuk = joystick}));
   }
   planned.plan.duration_s = common.seconds;
   return planned;

@@ -202,7 +202,7 @@ Result<RunnerPlan> PlanRunner(const Common& common) {
       return sensors;
     };
     const auto role = left ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand;
-    planned.plan.devices.push_back(MakeWiimote(common, *link, device, role, motion));
+    planned.plan.devices.push_back(MakeRemote(common, *link, device, role, motion));
   }
   planned.plan.duration_s = common.seconds;
   return planned;
@@ -214,22 +214,24 @@ using stream::DeviceRole;
 using stream::TurnSource;
 using stream::UserInterface;
 
-/// Interval of the user's decisions, s.
-constexpr double kLookS = 0.01;
+/// Step of the user's body, s; every second one begins with a decision.
+constexpr double kMoveS = 0.005;
 constexpr double kBoardGapM = 0.02;
 constexpr std::uint16_t kJumpButton = 0x0008;
 
-/// Readings of the remote with this index among the body-worn ones, with an accelerometer's noise.
+/// Readings of the remote with this index among the body-worn ones, with a Wiimote's noise.
 SimulatedDevice::WiimoteMotion RemoteOf(std::shared_ptr<LiveUser> user, std::size_t index,
-                                        std::uint64_t seed) {
-  return [user = std::move(user), index, random = noise::Random(seed)](double t_s) mutable {
+                                        std::uint64_t seed, HeldKind kind) {
+  const double noise_mps2 = kind == HeldKind::kWiimote ? wrists::SensorModel().noise_mps2 : 0;
+  return [user = std::move(user), index, noise_mps2,
+          random = noise::Random(seed)](double t_s) mutable {
     const users::Felt& felt = user->At(t_s);
     virtual_devices::WiimoteSensors sensors;
     if (index < static_cast<std::size_t>(felt.remote_count)) {
       sensors.specific_force_S_mps2 = felt.remotes[index].specific_force_S_mps2;
     }
     for (int axis = 0; axis < 3; ++axis) {
-      sensors.specific_force_S_mps2[axis] += wrists::SensorModel().noise_mps2 * random.Normal();
+      sensors.specific_force_S_mps2[axis] += noise_mps2 * random.Normal();
     }
     sensors.buttons = felt.button_a ? kJumpButton : 0;
     sensors.nunchuk.stick_x = felt.stick_x;
@@ -282,13 +284,18 @@ const users::Felt& LiveUser::At(double t_s) {
   if (t_s < at_s_ - 1) before_s_ = time_s_;  // The devices have connected again.
   at_s_ = t_s;
   const double until_s = before_s_ + t_s;
-  while (time_s_ + kLookS <= until_s) {
-    time_s_ += kLookS;
+  while (time_s_ + kMoveS <= until_s) {
+    time_s_ += kMoveS;
     seen_.time_s = time_s_;
-    wanted_ = Want();
+    decides_ = !decides_;
+    if (decides_) wanted_ = Want();
     person_.Advance(time_s_, wanted_);
+    recent_.push_back({time_s_, person_.felt()});
+    while (time_s_ - recent_.front().time_s > kRecentS) recent_.pop_front();
   }
-  return person_.felt();
+  const auto then = std::find_if(recent_.rbegin(), recent_.rend(),
+                                 [until_s](const Moment& one) { return one.time_s <= until_s; });
+  return then == recent_.rend() ? person_.felt() : then->felt;
 }
 
 users::Intention LiveUser::Want() {
@@ -335,8 +342,8 @@ Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& 
       continue;
     }
     live.plan.devices.push_back(
-        MakeWiimote(common, *link, device, roles[i], RemoteOf(live.user, i, seed),
-                    {.motion_plus = false, .nunchuk = named == UserInterface::kJoystick}));
+        MakeRemote(common, *link, device, roles[i], RemoteOf(live.user, i, seed, options.devices),
+                   {options.devices, false, named == UserInterface::kJoystick}));
   }
   live.plan.duration_s = common.seconds;
   return live;
@@ -387,10 +394,12 @@ CLI::App* AddUserCommand(CLI::App& app, UserOptions& options) {
                                 "and again");
   ranges->excludes(script)->excludes(see);
   AddBody(*user, options, see, ranges);
-  auto* motion_plus = user->add_flag("--motion-plus", options.ports.motion_plus,
-                                     "Add a MotionPlus to each Wiimote");
+  user->add_option("--devices", options.devices,
+                   "Devices that the user holds: wiimote or joycon (default wiimote)");
+  auto* motion_plus =
+      user->add_flag("--motion-plus", options.held.motion_plus, "Add a MotionPlus to each Wiimote");
   auto* nunchuk =
-      user->add_flag("--nunchuk", options.ports.nunchuk, "Add a Nunchuk to each Wiimote");
+      user->add_flag("--nunchuk", options.held.nunchuk, "Add a Nunchuk to each Wiimote");
   for (auto* body : {see, ranges}) body->excludes(motion_plus)->excludes(nunchuk);
   return user;
 }

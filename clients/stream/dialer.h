@@ -119,13 +119,20 @@ class LiveUser {
 
   void See(const v1::Tick& tick);
   /// Readings of the devices at t_s since the motion began; after a new connection that is 0 again.
+  /// Each device asks at its own times, which may be somewhat before another's.
   const users::Felt& At(double t_s);
 
  private:
+  struct Moment {
+    double time_s = 0;
+    users::Felt felt;
+  };
+
   users::Intention Want();
 
   /// Time without a frame after which the user sees nothing.
   static constexpr double kBlindS = 0.5;
+  static constexpr double kRecentS = 0.2;
 
   stream::Track track_;
   std::vector<users::Act> acts_;
@@ -133,6 +140,8 @@ class LiveUser {
   users::Person person_;
   users::Observation seen_;
   users::Intention wanted_;
+  bool decides_ = false;
+  std::deque<Moment> recent_;
   double seen_s_ = -1e9;
   double time_s_ = 0;
   double before_s_ = 0;  ///< Duration of the connections before this one.
@@ -152,6 +161,7 @@ struct LiveUserOptions {
   std::string grip_way = "mirrored";
   users::StyleWish style = {};
   bool ranges = false;  ///< Performs the motions of `footing-study ranges`.
+  HeldKind devices = HeldKind::kWiimote;
 };
 /// A usage error lists what there is. `style_seed` is that of the user, common.seed that of the
 /// devices.
@@ -169,7 +179,8 @@ struct UserOptions {
   bool ranges = false;
   std::optional<std::uint64_t> style_seed;
   users::StyleWish style;
-  Ports ports;
+  std::string devices = "wiimote";
+  Held held;  ///< What is plugged in.
 };
 
 /// The subcommand user and its flags. `options` must outlive the parsing.

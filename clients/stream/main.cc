@@ -103,12 +103,16 @@ void AddCommon(CLI::App& app, stream_client::Common& common) {
 }
 
 int RunUser(const stream_client::UserOptions& user, const stream_client::Common& common) {
+  const auto devices = stream_client::HeldKindNamed(user.devices);
+  if (!devices) return cli::Report(devices.error());
   if (user.see.empty() && !user.ranges) {
-    return Run(stream_client::PlanUser(user.script, user.interface, common, user.ports), common);
+    stream_client::Held held = user.held;
+    held.kind = *devices;
+    return Run(stream_client::PlanUser(user.script, user.interface, common, held), common);
   }
-  auto live = stream_client::PlanLiveUser(
-      {user.interface, user.turn_by, user.grip_deg, user.grip_way, user.style, user.ranges}, common,
-      user.style_seed.value_or(common.seed));
+  auto live = stream_client::PlanLiveUser({user.interface, user.turn_by, user.grip_deg,
+                                           user.grip_way, user.style, user.ranges, *devices},
+                                          common, user.style_seed.value_or(common.seed));
   if (!live) return cli::Report(live.error());
   if (user.ranges) return Run(std::move(live->plan), common);
   const auto simulation = transport::ParseAddress(user.see);
@@ -121,6 +125,7 @@ int RunUser(const stream_client::UserOptions& user, const stream_client::Common&
 
 constexpr char kExamples[] =
     "  footing-stream user --script demo --interface wrist\n"
+    "  footing-stream user --devices joycon --interface joystick\n"
     "  footing-stream user --interface leg --see tcp:localhost:7411 --seed 3\n"
     "  footing-stream user --interface leg --ranges --tempo 0.8    # for footing-study ranges\n"
     "  footing-stream sample .     # writes the files that these examples read\n"

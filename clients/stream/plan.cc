@@ -17,6 +17,7 @@
 #include "common/runtime/files.h"
 #include "common/runtime/log.h"
 #include "common/virtual/devices/accelerometer.h"
+#include "common/virtual/devices/joycon.h"
 #include "common/virtual/devices/noise.h"
 
 namespace footing::stream_client {
@@ -31,8 +32,9 @@ constexpr double kBlendS = 0.15;
 
 using Force = std::function<Eigen::Vector3d(double t_s)>;
 
-/// Adds a real accelerometer's noise to a synthetic motion.
-Force WithNoise(std::uint64_t seed, Force force) {
+/// Adds a Wiimote's noise to a synthetic motion.
+Force WithNoise(std::uint64_t seed, const Held& held, Force force) {
+  if (held.kind != HeldKind::kWiimote) return force;
   return [random = noise::Random(seed), force](double t_s) mutable {
     const double sd_mps2 = wrists::SensorModel().noise_mps2;
     Eigen::Vector3d felt = force(t_s);
@@ -118,7 +120,7 @@ Result<std::vector<wrists::Segment>> ReadScript(const std::string& script) {
 }
 
 Plan PlanWrists(const std::vector<wrists::Segment>& segments, LinkQuality link,
-                const Common& common, const Ports& ports) {
+                const Common& common, const Held& held) {
   using wrists::HandMotion;
   const auto make = [](std::vector<wrists::Segment> script) {
     return std::make_shared<const HandMotion>(std::move(script), wrists::WristShape(), kBlendS);
@@ -139,19 +141,20 @@ Plan PlanWrists(const std::vector<wrists::Segment>& segments, LinkQuality link,
     const std::uint64_t device = left ? 1 : 2;
     const double duration_s = motion->DurationSeconds();
     const Force force =
-        WithNoise(DeviceSeed(common, device), Repeated(of(motion, left), duration_s));
+        WithNoise(DeviceSeed(common, device), held, Repeated(of(motion, left), duration_s));
     const Force turn = Repeated(TurnOf(of(gravity, left)), duration_s);
     const DeviceRole role = left ? DeviceRole::kLeftHand : DeviceRole::kRightHand;
-    plan.devices.push_back(MakeWiimote(common, link, device, role, Felt(force, turn), ports));
+    plan.devices.push_back(MakeRemote(common, link, device, role, Felt(force, turn), held));
   }
   return plan;
 }
 
 Plan PlanJoystick(const std::vector<wrists::Segment>& segments, LinkQuality link,
-                  const Common& common, const Ports& ports) {
+                  const Common& common, const Held& held) {
   const auto stick = std::make_shared<const StickMotion>(segments, kBlendS);
   const auto still = [](double) { return Eigen::Vector3d(0, 0, -kStandardGravityMps2); };
-  const auto motion = [stick, force = WithNoise(DeviceSeed(common, 1), still)](double t_s) mutable {
+  const auto motion = [stick,
+                       force = WithNoise(DeviceSeed(common, 1), held, still)](double t_s) mutable {
     const StickState state = stick->At(std::fmod(t_s, stick->DurationSeconds()));
     constexpr std::uint16_t kA = 0x0008;
     virtual_devices::WiimoteSensors sensors;
@@ -162,12 +165,35 @@ Plan PlanJoystick(const std::vector<wrists::Segment>& segments, LinkQuality link
     return sensors;
   };
   Plan plan;
-  plan.devices.push_back(
-      MakeWiimote(common, link, 1, DeviceRole::kRightHand, motion, {ports.motion_plus, true}));
+  plan.devices.push_back(MakeRemote(common, link, 1, DeviceRole::kRightHand, motion,
+                                    {held.kind, held.motion_plus, true}));
   return plan;
 }
 
+/// A Joy-Con moved as a Wiimote is; its stick stands for the Nunchuk's, its A or L for the button
+/// A.
+SimulatedDevice::JoyconMotion AsJoycon(SimulatedDevice::WiimoteMotion motion, std::uint64_t seed) {
+  return [motion = std::move(motion), random = noise::Random(seed)](double t_s) mutable {
+    constexpr std::uint16_t kWiimoteA = 0x0008;
+    const virtual_devices::WiimoteSensors felt = motion(std::max(0.0, t_s));
+    virtual_devices::JoyconSensors sensors;
+    sensors.specific_force_S_mps2 = felt.specific_force_S_mps2;
+    sensors.angular_velocity_S_radps = felt.angular_velocity_S_radps;
+    sensors.stick_x = felt.nunchuk.stick_x;
+    sensors.stick_y = felt.nunchuk.stick_y;
+    sensors.buttons =
+        (felt.buttons & kWiimoteA) != 0 ? virtual_devices::kJoyconA | virtual_devices::kJoyconL : 0;
+    return virtual_devices::WithNoise(sensors, random);
+  };
+}
+
 }  // namespace
+
+Result<HeldKind> HeldKindNamed(const std::string& name) {
+  if (name == "wiimote") return HeldKind::kWiimote;
+  if (name == "joycon") return HeldKind::kJoycon;
+  return UsageError("--devices " + name + ": there are wiimote and joycon");
+}
 
 Result<LinkQuality> ParseLink(const std::string& name) {
   if (const auto quality = virtual_devices::LinkNamed(name)) return *quality;
@@ -178,19 +204,25 @@ std::uint64_t DeviceSeed(const Common& common, std::uint64_t device) {
   return common.seed * 1000 + device;
 }
 
-SimulatedDevice MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device,
-                            DeviceRole role, SimulatedDevice::WiimoteMotion motion,
-                            const Ports& ports) {
+SimulatedDevice MakeRemote(const Common& common, LinkQuality link, std::uint64_t device,
+                           DeviceRole role, SimulatedDevice::WiimoteMotion motion,
+                           const Held& held) {
   const std::uint64_t seed = DeviceSeed(common, device);
+  if (held.kind == HeldKind::kJoycon) {
+    const bool right = role == DeviceRole::kRightHand || role == DeviceRole::kRightLeg;
+    return {virtual_devices::Joycon(seed, right ? virtual_devices::JoyconModel::kRight
+                                                : virtual_devices::JoyconModel::kLeft),
+            AsJoycon(std::move(motion), seed), role, virtual_devices::JoyconLink(link, seed + 500)};
+  }
   virtual_devices::Wiimote wiimote(seed);
-  if (ports.motion_plus) wiimote.Plug(virtual_devices::Accessory::kMotionPlus, 0);
-  if (ports.nunchuk) wiimote.Plug(virtual_devices::Accessory::kNunchuk, 0);
+  if (held.motion_plus) wiimote.Plug(virtual_devices::Accessory::kMotionPlus, 0);
+  if (held.nunchuk) wiimote.Plug(virtual_devices::Accessory::kNunchuk, 0);
   return {std::move(wiimote), std::move(motion), role,
           virtual_devices::WiimoteLink(link, seed + 500)};
 }
 
 Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
-                      const Ports& ports) {
+                      const Held& held) {
   if (interface != "wrist" && interface != "joystick") {
     return UsageError(
         "--interface " + interface +
@@ -201,8 +233,8 @@ Result<Plan> PlanUser(const std::string& script, const std::string& interface, c
   if (!link) return link.error();
   const auto segments = ReadScript(script);
   if (!segments) return segments.error();
-  Plan plan = interface == "wrist" ? PlanWrists(*segments, *link, common, ports)
-                                   : PlanJoystick(*segments, *link, common, ports);
+  Plan plan = interface == "wrist" ? PlanWrists(*segments, *link, common, held)
+                                   : PlanJoystick(*segments, *link, common, held);
   plan.duration_s = Duration(common, 0);
   return plan;
 }
@@ -221,8 +253,8 @@ Result<Plan> PlanAccelerations(const std::string& left, const std::string& right
     const auto table = ReadTable(path, 3);
     if (!table) return table.error();
     longest_s = std::max(longest_s, static_cast<double>((*table)->rows.size()) / rate_hz);
-    plan.devices.push_back(MakeWiimote(common, *link, plan.devices.size() + 1, role,
-                                       Felt(PlayAccelerations(*table, rate_hz))));
+    plan.devices.push_back(MakeRemote(common, *link, plan.devices.size() + 1, role,
+                                      Felt(PlayAccelerations(*table, rate_hz))));
   }
   plan.duration_s = Duration(common, longest_s);
   return plan;
@@ -378,7 +410,7 @@ Result<Plan> PlanBuilder(bool pits, const Common& common) {
     return sensors;
   };
   Plan plan;
-  plan.devices.push_back(MakeWiimote(common, *link, 3, stream::DeviceRole::kEditor, motion));
+  plan.devices.push_back(MakeRemote(common, *link, 3, stream::DeviceRole::kEditor, motion));
   plan.duration_s = common.seconds;
   return plan;
 }

@@ -23,8 +23,14 @@ struct Common {
   double seconds = 0;  ///< 0: the script again and again, a recording once.
 };
 
-/// Extensions in the Wiimotes' ports.
-struct Ports {
+/// Devices that a synthetic user holds.
+enum class HeldKind { kWiimote, kJoycon };
+/// "wiimote" or "joycon"; else a usage error that lists them.
+Result<HeldKind> HeldKindNamed(const std::string& name);
+
+/// The same, and what is plugged into a Wiimote's port.
+struct Held {
+  HeldKind kind = HeldKind::kWiimote;
   bool motion_plus = false;
   bool nunchuk = false;
 };
@@ -62,10 +68,10 @@ struct Plan {
 
 /// A synthetic user; `script` is a built-in name or a path. `interface` "wrist": two Wiimotes that
 /// are swung. "joystick": one Wiimote in the right hand, whose Nunchuk's stick walks, runs and
-/// turns, and whose button A jumps (gait paper, section 7). A MotionPlus measures the rate of
-/// inclination.
+/// turns, and whose button A jumps (gait paper, section 7), or a Joy-Con with its own stick. A
+/// MotionPlus measures the rate of inclination.
 Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
-                      const Ports& ports = {});
+                      const Held& held = {});
 
 /// One or two Wiimotes that feel recorded accelerations: CSV `ax,ay,az`, m/s² in the sensor frame.
 Result<Plan> PlanAccelerations(const std::string& left, const std::string& right, double rate_hz,
@@ -75,12 +81,14 @@ Result<Plan> PlanAccelerations(const std::string& left, const std::string& right
 Result<Plan> PlanCorners(const std::string& left, const std::string& right, const Common& common);
 
 /// Parts of every plan: the link that a flag names, seeds so that no two devices of a run share
-/// their random numbers, a Wiimote with the extension in its port.
+/// their random numbers, a Wiimote with the extension in its port or a Joy-Con, the right one for
+/// the right hand and leg. The noise of a Wiimote's sensor is part of its motion; a Joy-Con's is
+/// added.
 Result<virtual_devices::LinkQuality> ParseLink(const std::string& name);
 std::uint64_t DeviceSeed(const Common& common, std::uint64_t device);
-SimulatedDevice MakeWiimote(const Common& common, virtual_devices::LinkQuality link,
-                            std::uint64_t device, stream::DeviceRole role,
-                            SimulatedDevice::WiimoteMotion motion, const Ports& ports = {});
+SimulatedDevice MakeRemote(const Common& common, virtual_devices::LinkQuality link,
+                           std::uint64_t device, stream::DeviceRole role,
+                           SimulatedDevice::WiimoteMotion motion, const Held& held = {});
 
 /// A CSV table of numbers with a fixed number of columns; the first line may be a header.
 struct Table {

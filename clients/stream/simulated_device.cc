@@ -25,11 +25,34 @@ constexpr std::uint8_t kAcknowledgement = 0x22;
 constexpr std::uint8_t kNothingThere = 0x07;  // In the low half of a read reply's fourth byte.
 constexpr std::uint8_t kMoveCalibrationFeature = 0x10;
 
-/// A request without the motor's bit, which every output report has in its second byte.
+// A Joy-Con's: packet number and motor in bytes 1 to 9, then subcommand and arguments.
+constexpr std::uint8_t kSubcommandRequest = 0x01;
+constexpr std::size_t kSubcommandAt = 10;
+constexpr std::uint8_t kReadSubcommand = 0x10;
+
+bool IsSubcommand(std::span<const std::uint8_t> output) {
+  return output.size() > kSubcommandAt + 5 && output[0] == kSubcommandRequest;
+}
+
+/// A request without what it says of the motor: a bit in the second byte of every output report.
 Report RequestOf(std::span<const std::uint8_t> output) {
   Report request(output.begin(), output.end());
-  if (request.size() > 1) request[1] &= 0xfe;
+  if (IsSubcommand(output)) {
+    std::fill(request.begin() + 1, request.begin() + kSubcommandAt, 0);
+  } else if (request.size() > 1) {
+    request[1] &= 0xfe;
+  }
   return request;
+}
+
+/// A reply repeats the subcommand, and of a read address and size as well.
+bool FitsSubcommand(const Report& request, const Report& reply) {
+  constexpr std::size_t kReplyAt = 14;
+  if (reply[0] != kReadReply || reply.size() <= kReplyAt + 5) return false;
+  const std::size_t bytes = request[kSubcommandAt] == kReadSubcommand ? 6 : 1;
+  return std::equal(request.begin() + kSubcommandAt,
+                    request.begin() + static_cast<std::ptrdiff_t>(kSubcommandAt + bytes),
+                    reply.begin() + kReplyAt);
 }
 
 bool IsAnswer(std::uint8_t id) {
@@ -38,6 +61,7 @@ bool IsAnswer(std::uint8_t id) {
 
 /// The answer that belongs to a request.
 bool Fits(const Report& request, const Report& answer) {
+  if (IsSubcommand(request)) return FitsSubcommand(request, answer);
   switch (request[0]) {
     case kStatusRequest:
       return answer[0] == kStatusReply;
@@ -183,6 +207,11 @@ std::vector<Report> Sample(virtual_devices::BalanceBoard& board, std::int64_t,
   return report ? std::vector<Report>{*report} : std::vector<Report>{};
 }
 
+std::vector<Report> Sample(virtual_devices::Joycon& joycon, std::int64_t now_ns,
+                           const virtual_devices::JoyconBurst& burst) {
+  return joycon.Sample(now_ns, burst);
+}
+
 std::vector<Report> Sample(virtual_devices::PsMove& move, std::int64_t now_ns,
                            const virtual_devices::MoveSensors& sensors) {
   return move.Sample(now_ns, sensors);
@@ -207,6 +236,19 @@ SimulatedDevice::SimulatedDevice(virtual_devices::BalanceBoard board, CornerForc
 SimulatedDevice::SimulatedDevice(virtual_devices::PsMove move, MoveMotion motion,
                                  stream::DeviceRole role, const virtual_devices::LinkConfig& link)
     : SimulatedDevice(Device(Move{std::move(move), std::move(motion)}), role, link) {}
+
+SimulatedDevice::SimulatedDevice(virtual_devices::Joycon joycon, JoyconMotion motion,
+                                 stream::DeviceRole role, const virtual_devices::LinkConfig& link)
+    : SimulatedDevice(Device(Joycon{std::move(joycon),
+                                    [motion = std::move(motion)](double t_s) {
+                                      constexpr double kSpacingS = 0.005;
+                                      virtual_devices::JoyconBurst burst;
+                                      burst[0] = motion(t_s - 2 * kSpacingS);
+                                      burst[1] = motion(t_s - kSpacingS);
+                                      burst[2] = motion(t_s);
+                                      return burst;
+                                    }}),
+                      role, link) {}
 
 SimulatedDevice::SimulatedDevice(RecordedDevice recorded, stream::DeviceRole role)
     : SimulatedDevice(Device(Recorded{std::move(recorded)}), role, {}) {}

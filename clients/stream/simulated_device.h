@@ -12,6 +12,7 @@
 
 #include "common/stream/device.h"
 #include "common/virtual/devices/controller.h"
+#include "common/virtual/devices/joycon.h"
 #include "common/virtual/devices/link_model.h"
 #include "common/virtual/devices/wiimote.h"
 
@@ -76,12 +77,16 @@ class SimulatedDevice {
   using WiimoteMotion = std::function<virtual_devices::WiimoteSensors(double t_s)>;
   using CornerForces = std::function<virtual_devices::CornerForces(double t_s)>;
   using MoveMotion = std::function<virtual_devices::MoveSensors(double t_s)>;
+  /// Each report asks for three times, 5 ms apart.
+  using JoyconMotion = std::function<virtual_devices::JoyconSensors(double t_s)>;
 
   SimulatedDevice(virtual_devices::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
                   const virtual_devices::LinkConfig& link);
   SimulatedDevice(virtual_devices::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
                   const virtual_devices::LinkConfig& link);
   SimulatedDevice(virtual_devices::PsMove move, MoveMotion motion, stream::DeviceRole role,
+                  const virtual_devices::LinkConfig& link);
+  SimulatedDevice(virtual_devices::Joycon joycon, JoyconMotion motion, stream::DeviceRole role,
                   const virtual_devices::LinkConfig& link);
   /// Its reports, and when they come, are those of the recording.
   SimulatedDevice(RecordedDevice recorded, stream::DeviceRole role);
@@ -133,10 +138,11 @@ class SimulatedDevice {
   using Wiimote = Felt<virtual_devices::Wiimote, virtual_devices::WiimoteSensors>;
   using Board = Felt<virtual_devices::BalanceBoard, virtual_devices::CornerForces>;
   using Move = Felt<virtual_devices::PsMove, virtual_devices::MoveSensors>;
+  using Joycon = Felt<virtual_devices::Joycon, virtual_devices::JoyconBurst>;
   struct Recorded {
     RecordedDevice device;
   };
-  using Device = std::variant<Wiimote, Board, Move, Recorded>;
+  using Device = std::variant<Wiimote, Board, Move, Joycon, Recorded>;
 
   SimulatedDevice(Device device, stream::DeviceRole role, const virtual_devices::LinkConfig& link);
 

@@ -13,6 +13,7 @@
 namespace footing::gait_service {
 namespace {
 
+using stream::DeviceKind;
 using stream::DeviceRole;
 using stream::DeviceStatus;
 using stream::Extension;
@@ -21,16 +22,18 @@ using stream::UserInterface;
 /// Bit in a Wiimote's two button bytes, as MotionSample has them.
 constexpr std::uint32_t kButtonA = 0x0008;
 
-bool HasNunchuk(const DeviceStatus& device) {
+bool HasStick(const DeviceStatus& device) {
   return device.extension == Extension::kNunchuk ||
-         device.extension == Extension::kMotionPlusNunchuk;
+         device.extension == Extension::kMotionPlusNunchuk ||
+         device.kind == DeviceKind::kJoyConLeft || device.kind == DeviceKind::kJoyConRight ||
+         device.kind == DeviceKind::kSwitchProController;
 }
 
-/// Whether the device can have what the interface reads: a stick is that of a Nunchuk. One that has
-/// not said yet what is plugged in may have it.
+/// Whether the device can have what the interface reads: a stick of its own, or that of a Nunchuk.
+/// One that has not said yet what is plugged in may have it.
 bool MayServe(const DeviceStatus& device, UserInterface interface) {
   return interface != UserInterface::kJoystick || device.extension == Extension::kUnspecified ||
-         HasNunchuk(device);
+         HasStick(device);
 }
 
 /// A sample that is used as it is: decoded when it arrived, it then waited for its tick.
@@ -60,8 +63,8 @@ Result<std::string> InputCollector::RigFor(const mapping::InterfaceOptions& opti
   if (options.interface == UserInterface::kJoystick) {
     return Failure(
         (followed.empty() ? "there is no" : "the rig " + followed + " has no") +
-        std::string(" Wiimote in a hand with a Nunchuk plugged in; plug one in, or give "
-                    "its Wiimote the role left_hand or right_hand (footing-ctl assign)"));
+        std::string(" Joy-Con, nor Wiimote with a Nunchuk plugged in, in a hand; connect one, or "
+                    "give it the role left_hand or right_hand (footing-ctl assign)"));
   }
   return Failure((followed.empty() ? "there is no " : "the rig " + followed + " lacks ") +
                  stream::RoleNames(missing) +
@@ -86,7 +89,7 @@ DeviceRole InputCollector::StickRole() const {
   for (const DeviceStatus& device : sensors_.devices()) {
     const DeviceRole hand = sensors_.RoleOf(device.device);
     if (hand == DeviceRole::kUnspecified || !MayServe(device, options_.interface)) continue;
-    if (HasNunchuk(device)) return hand;
+    if (HasStick(device)) return hand;
     role = hand;
     ++hands;
   }

@@ -8,6 +8,7 @@
 
 #include "common/base/units.h"
 #include "common/recording/recorded_session.h"
+#include "common/virtual/devices/joycon.h"
 #include "tests/clients/stream/virtual_line.h"
 #include "tests/common/made_recording.h"
 #include "tests/common/temporary_folder.h"
@@ -223,6 +224,37 @@ TEST(RecordedDevice, RepeatedRequestsGetTheirAnswersInOrder) {
   EXPECT_EQ(device.Take()[0], 0x31);
   EXPECT_EQ(device.Take()[3], 3);
   EXPECT_FALSE(device.NextTime().has_value());
+}
+
+TEST(RecordedDevice, AJoyconsSubcommandsAreKnownWhateverPacketAndMotor) {
+  virtual_devices::Joycon joycon(3, virtual_devices::JoyconModel::kLeft);
+  const auto read = [](std::uint8_t packet, std::uint8_t motor, std::uint8_t address) {
+    virtual_devices::Report report(49, 0);
+    report[0] = 0x01;
+    report[1] = packet;
+    report[3] = motor;
+    report[10] = 0x10;
+    report[11] = address;
+    report[12] = 0x60;
+    report[15] = 18;
+    return report;
+  };
+  std::vector<RecordedReport> reports;
+  for (const std::uint8_t address : {0x20, 0x3d}) {
+    const auto request = read(1, 1, address);
+    reports.push_back({0.01, request, true, false});
+    reports.push_back({0.02, joycon.HandleOutput(0, request)[0], false, false});
+  }
+  virtual_devices::Report samples(49, 0);
+  samples[0] = 0x30;
+  reports.push_back({0.03, samples, false, false});
+  RecordedDevice device(joycon.identity(), 0, 1, reports, {});
+  EXPECT_TRUE(device.has_handshake());
+  const auto answers = device.HandleOutput(0, read(9, 0x81, 0x3d));
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0], reports[3].bytes);
+  EXPECT_TRUE(device.HandleOutput(0, read(9, 1, 0x11)).empty());
+  EXPECT_EQ(device.NextTime(), 0.03);
 }
 
 }  // namespace
