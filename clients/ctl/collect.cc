@@ -109,6 +109,7 @@ void CollectProcesses(const fs::path& root, Facts& facts) {
     if (error != std::errc() || end != number.data() + number.size()) continue;
     const std::string name = FirstLine(process / "comm");
     if (name == "bluetoothd") facts.bluetoothd_running = true;
+    if (name == "steam") facts.steam_running = true;
     if (name != "footingd" || !OwnsDevices(ReadFile(process / "cmdline"))) continue;
     doctor::User user = doctor::ParseProcess(ReadFile(process / "status"));
     user.name = UserName(root, user.uid);
@@ -212,10 +213,10 @@ Facts CollectHost(const std::string& root) {
   CollectHid(base, facts);
   CollectModules(base, facts);
   CollectAdapters(base, facts);
-  facts.udev_rules = FilesWith(base,
-                               {"etc/udev/rules.d", "run/udev/rules.d", "usr/lib/udev/rules.d",
-                                "usr/local/lib/udev/rules.d"},
-                               ".rules", doctor::HasRule);
+  const std::vector<const char*> rules = {"etc/udev/rules.d", "run/udev/rules.d",
+                                          "usr/lib/udev/rules.d", "usr/local/lib/udev/rules.d"};
+  facts.udev_rules = FilesWith(base, rules, ".rules", doctor::HasRule);
+  facts.joycond_rules = FilesWith(base, rules, ".rules", doctor::TakesSwitchNodes);
   facts.input_config = doctor::ParseIni(ReadFile(base / "etc/bluetooth/input.conf"));
   if (root == "/") AskBlueZ(facts);
   return facts;
@@ -265,16 +266,20 @@ void AddDoctorCommand(CLI::App& app, Shared& shared) {
 
 namespace {
 
-stream::DeviceKind KindOf(pairing::Kind kind) {
+bool IsA(pairing::Kind kind, stream::DeviceKind device) {
   switch (kind) {
     case pairing::Kind::kWiimote:
-      return stream::DeviceKind::kWiimote;
+      return device == stream::DeviceKind::kWiimote;
     case pairing::Kind::kBoard:
-      return stream::DeviceKind::kBalanceBoard;
+      return device == stream::DeviceKind::kBalanceBoard;
     case pairing::Kind::kMove:
-      return stream::DeviceKind::kPsMove;
+      return device == stream::DeviceKind::kPsMove;
+    case pairing::Kind::kJoycon:
+      return device == stream::DeviceKind::kJoyConLeft ||
+             device == stream::DeviceKind::kJoyConRight ||
+             device == stream::DeviceKind::kSwitchProController;
   }
-  return stream::DeviceKind::kUnspecified;
+  return false;
 }
 
 pairing::Host Look(const std::string& root) {
@@ -294,7 +299,7 @@ Result<void> WaitForNew(Connection& session, pairing::Kind kind, double within_s
   const auto live = [&] {
     std::set<std::string> serials;
     for (const stream::DeviceStatus& device : session.status()) {
-      const bool counts = device.kind == KindOf(kind);
+      const bool counts = IsA(kind, device.kind);
       if (counts && device.state == stream::DeviceState::kLive) serials.insert(device.serial);
     }
     return serials;
@@ -325,8 +330,8 @@ void Pair(const std::string& name, bool print, double within_s, const std::strin
           Shared& shared) {
   const auto kind = pairing::KindNamed(name);
   if (!kind) {
-    shared.exit_code =
-        cli::Report(UsageError("cannot pair a " + name + "; must be wiimote, board or move"));
+    shared.exit_code = cli::Report(
+        UsageError("cannot pair a " + name + "; must be wiimote, board, move or joycon"));
     return;
   }
   const pairing::Host host = Look(root);
@@ -347,7 +352,7 @@ void AddPairCommand(CLI::App& app, Shared& shared) {
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("pair", "Pair a new device, step by step");
-  command->add_option("DEVICE", arguments->device, "Kind of device: wiimote, board or move")
+  command->add_option("DEVICE", arguments->device, "Kind of device: wiimote, board, move or joycon")
       ->required();
   command->add_flag("--print", arguments->print, "Only print the steps");
   command->add_option("--seconds", arguments->within_s, "Timeout, s (default 180)")

@@ -361,14 +361,21 @@ std::vector<Symptom> Lost(const Facts& facts) {
       });
 }
 
+bool IsSwitchKind(const DeviceStatus& device) {
+  return device.kind == DeviceKind::kJoyConLeft || device.kind == DeviceKind::kJoyConRight ||
+         device.kind == DeviceKind::kSwitchProController;
+}
+
 std::vector<Symptom> BatteryLow(const Facts& facts) {
   return Each(
       facts, [](const DeviceStatus& device) { return IsThere(device) && device.battery_low; },
       [](const DeviceStatus& device) {
         return Symptom{Severity::kWarning, "its battery is low", "",
                        device.kind == DeviceKind::kPsMove ? "charge it by USB"
-                       : IsBoard(device)                  ? "change its four AA batteries"
-                                                          : "change its two AA batteries"};
+                       : IsSwitchKind(device)
+                           ? "charge it on a console, in a charging grip or by USB"
+                       : IsBoard(device) ? "change its four AA batteries"
+                                         : "change its two AA batteries"};
       });
 }
 
@@ -575,6 +582,11 @@ bool MayOpen(const User& who, const HidDevice& hid) {
   return (hid.node_mode >> shift & kReadWrite) == kReadWrite;
 }
 
+bool AnyOfSwitch(const Facts& facts) {
+  return std::any_of(facts.hid.begin(), facts.hid.end(),
+                     [](const HidDevice& hid) { return IsOfSwitch(hid.sysfs_id); });
+}
+
 bool IsNintendo(const HidDevice& hid) { return hid.sysfs_id.find(":057E:") != std::string::npos; }
 
 /// Or needs no group.
@@ -670,6 +682,18 @@ std::vector<Symptom> NodeMissing(const Facts& facts) {
   for (const HidDevice& hid : facts.hid) {
     if (!hid.node.empty()) continue;
     const bool none = hid.driver.empty();
+    if (none && IsOfSwitch(hid.sysfs_id)) {
+      found.push_back(
+          {Severity::kError,
+           hid.name + " " + hid.serial +
+               " has no hidraw node: hid_nintendo's start failed, as it does with a copy "
+               "that leaves one of its questions unanswered",
+           "/sys/bus/hid/devices/" + hid.sysfs_id,
+           "echo 'blacklist hid_nintendo' | sudo tee /etc/modprobe.d/footing.conf && "
+           "sudo modprobe -r hid_nintendo, then switch it off and on; footingd needs no "
+           "driver for it"});
+      continue;
+    }
     found.push_back(
         {Severity::kError,
          hid.name + " " + hid.serial + " has no hidraw node: " +
@@ -697,7 +721,8 @@ std::vector<Symptom> Blacklisted(const Facts& facts) {
 }
 
 std::vector<Symptom> WrongDriver(const Facts& facts) {
-  static const std::vector<std::string> right = {"wiimote", "hid-generic", "sony", "playstation"};
+  static const std::vector<std::string> right = {"wiimote", "hid-generic", "sony", "playstation",
+                                                 "nintendo"};
   std::vector<Symptom> found;
   for (const HidDevice& hid : facts.hid) {
     if (hid.driver.empty()) continue;
@@ -723,6 +748,26 @@ std::vector<Symptom> DriverInTheWay(const Facts& facts) {
   return found;
 }
 
+std::vector<Symptom> SteamWrites(const Facts& facts) {
+  if (!facts.steam_running || !AnyOfSwitch(facts)) return {};
+  return {{Severity::kNote,
+           "Steam is running; it sets up Joy-Cons and Pro Controllers in its own way, and footingd "
+           "sets them up again",
+           "process steam",
+           "end Steam, or switch off its support of Switch controllers in Settings, Controller"}};
+}
+
+std::vector<Symptom> JoycondRule(const Facts& facts) {
+  if (facts.joycond_rules.empty() || !AnyOfSwitch(facts)) return {};
+  return {
+      {Severity::kWarning,
+       "joycond's udev rule shuts the node of a Pro Controller after Footing's rule opened it",
+       facts.joycond_rules.front(),
+       "sudo apt remove joycond, or let Footing's rule come last: sudo cp "
+       "/usr/lib/udev/rules.d/70-footing.rules /etc/udev/rules.d/90-footing.rules && sudo udevadm "
+       "control --reload && sudo udevadm trigger --subsystem-match=hidraw"}};
+}
+
 }  // namespace
 
 std::vector<Check> HostChecks() {
@@ -730,7 +775,8 @@ std::vector<Check> HostChecks() {
           {"other_version", OtherVersion},      {"node_without_permission", NoPermission},
           {"udev_rule_missing", RuleMissing},   {"user_not_in_group", NotInGroup},
           {"hidraw_missing", NodeMissing},      {"driver_blacklisted", Blacklisted},
-          {"wrong_driver", WrongDriver},        {"driver_in_the_way", DriverInTheWay}};
+          {"wrong_driver", WrongDriver},        {"driver_in_the_way", DriverInTheWay},
+          {"steam_writes", SteamWrites},        {"joycond_rule", JoycondRule}};
 }
 
 namespace {

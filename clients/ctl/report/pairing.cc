@@ -5,7 +5,10 @@
 namespace footing::ctl::pairing {
 namespace {
 
-constexpr std::array kNames = {"wiimote", "board", "move"};
+constexpr std::array kNames = {"wiimote", "board", "move", "joycon"};
+/// As footingd names them.
+constexpr std::array kDeviceKinds = {"wiimote", "balance_board", "ps_move",
+                                     "joy_con_left or joy_con_right"};
 
 struct NintendoText {
   const char* button;  ///< Where the red button is.
@@ -94,6 +97,30 @@ std::vector<Step> MoveSteps(const Host& host) {
   return steps;
 }
 
+std::vector<Step> JoyconSteps(const Host& host) {
+  std::vector<Step> steps;
+  if (host.bluez_version.empty() || host.adapter.empty()) AddHost(host, steps);
+  steps.push_back(
+      {"Take the Joy-Con off the console, or switch the console off: a bond with the "
+       "computer is lost as soon as it is slid onto a console again. Start bluetoothctl in "
+       "a second terminal. What follows is typed there.",
+       "bluetoothctl", "Agent registered"});
+  steps.push_back({"Power on, with an agent, and look for devices.",
+                   "power on\nagent on\ndefault-agent\nscan on", "Discovery started"});
+  steps.push_back(
+      {"Hold the small round button on the rail, between SL and SR, for 3 s, until the lamps run "
+       "to "
+       "and fro (Pro Controller: the button beside its USB port).",
+       "", "[NEW] Device ADDRESS Joy-Con (L), Joy-Con (R) or Pro Controller"});
+  steps.push_back({"Pair, connect and trust it while the lamps run.",
+                   "pair ADDRESS\nconnect ADDRESS\ntrust ADDRESS", "Connection successful"});
+  steps.push_back(
+      {"Leave bluetoothctl. Later any button wakes it; it switches itself off after about "
+       "an hour without a button pressed.",
+       "scan off\nquit", ""});
+  return steps;
+}
+
 }  // namespace
 
 std::optional<Kind> KindNamed(const std::string& name) {
@@ -106,11 +133,12 @@ std::optional<Kind> KindNamed(const std::string& name) {
 const char* Name(Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 
 std::vector<Step> Steps(Kind kind, const Host& host) {
-  std::vector<Step> steps = kind == Kind::kMove ? MoveSteps(host) : NintendoSteps(kind, host);
-  steps.push_back({"footingd has it as soon as it is connected.", "footing-ctl devices",
-                   std::string("a live device of kind ") + (kind == Kind::kWiimote ? "wiimote"
-                                                            : kind == Kind::kBoard ? "balance_board"
-                                                                                   : "ps_move")});
+  std::vector<Step> steps = kind == Kind::kMove     ? MoveSteps(host)
+                            : kind == Kind::kJoycon ? JoyconSteps(host)
+                                                    : NintendoSteps(kind, host);
+  steps.push_back(
+      {"footingd has it as soon as it is connected.", "footing-ctl devices",
+       std::string("a live device of kind ") + kDeviceKinds[static_cast<std::size_t>(kind)]});
   return steps;
 }
 

@@ -10,7 +10,7 @@
 namespace footing::ctl::pairing {
 
 /// Device that is to be paired.
-enum class Kind { kWiimote, kBoard, kMove };
+enum class Kind { kWiimote, kBoard, kMove, kJoycon };
 
 std::optional<Kind> KindNamed(const std::string& name);
 const char* Name(Kind kind);

@@ -81,7 +81,10 @@ std::vector<KnownDevice> ParseDevices(const std::string& text) {
     const std::vector<std::string> words = Tokens(line, ' ');
     if (words.size() < 3 || words[0] != "Device" || !IsAddress(words[1])) continue;
     const std::string name = line.substr(line.find(words[1]) + words[1].size() + 1);
-    const bool ours = name.rfind("Nintendo RVL", 0) == 0 || name.rfind("Motion Controller", 0) == 0;
+    static constexpr std::array kNames = {"Nintendo RVL", "Motion Controller", "Joy-Con (",
+                                          "Pro Controller"};
+    const bool ours = std::any_of(kNames.begin(), kNames.end(),
+                                  [&](const char* known) { return name.rfind(known, 0) == 0; });
     if (ours) devices.push_back({words[1], name});
   }
   return devices;
@@ -134,8 +137,26 @@ bool HasRule(const std::string& text) {
 
 bool IsOurs(const std::string& sysfs_id) {
   static constexpr std::array kKinds = {":057E:0306.", ":057E:0330.", ":054C:03D5.", ":054C:0C5E."};
-  return std::any_of(kKinds.begin(), kKinds.end(),
-                     [&](const char* kind) { return sysfs_id.find(kind) != std::string::npos; });
+  return IsOfSwitch(sysfs_id) || std::any_of(kKinds.begin(), kKinds.end(), [&](const char* kind) {
+           return sysfs_id.find(kind) != std::string::npos;
+         });
+}
+
+bool IsOfSwitch(const std::string& sysfs_id) {
+  static constexpr std::array kIds = {"0005:057E:2006.", "0005:057E:2007.", "0005:057E:2009."};
+  return std::any_of(kIds.begin(), kIds.end(),
+                     [&](const char* id) { return sysfs_id.rfind(id, 0) == 0; });
+}
+
+bool TakesSwitchNodes(const std::string& text) {
+  for (const std::string& line : Lines(text)) {
+    const std::string lower = text::Lower(line);
+    if (lower.find("hidraw") != std::string::npos && lower.find("2009") != std::string::npos &&
+        lower.find("mode=\"0600\"") != std::string::npos) {
+      return true;
+    }
+  }
+  return false;
 }
 
 User ParseProcess(const std::string& status) {

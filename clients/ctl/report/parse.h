@@ -63,6 +63,9 @@ struct Facts {
   std::vector<std::string> udev_rules;  ///< Files with a rule for the hidraw nodes of our devices.
   std::vector<std::string> blacklists;  ///< Files that blacklist hid_wiimote.
   bool ignore_special_drivers = false;
+  /// Programs that write to the Switch's controllers, too.
+  bool steam_running = false;
+  std::vector<std::string> joycond_rules;  ///< Files that shut the controllers' nodes.
 
   std::vector<Adapter> adapters;
   bool bluetoothd_running = false;
@@ -107,6 +110,10 @@ bool HasRule(const std::string& text);
 
 /// "0005:057E:0306.0001" is of a device that Footing knows.
 bool IsOurs(const std::string& sysfs_id);
+/// The same of a Joy-Con or Switch Pro Controller over Bluetooth.
+bool IsOfSwitch(const std::string& sysfs_id);
+/// A udev rules file that shuts the nodes of the Switch's controllers, as joycond's does.
+bool TakesSwitchNodes(const std::string& text);
 
 /// Who runs a process, from /proc/PID/status; the name is left to the caller.
 User ParseProcess(const std::string& status);

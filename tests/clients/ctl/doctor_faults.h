@@ -99,6 +99,16 @@ inline std::vector<Case> Cases() {
        [](Facts& f) { f.hid[0].driver = "steam"; }},
       {"driver_in_the_way", S::kNote, "update-initramfs",
        [](Facts& f) { f.hid[0].driver = "wiimote"; }},
+      {"steam_writes", S::kNote, "Controller",
+       [](Facts& f) {
+         f.hid[0].sysfs_id = "0005:057E:2006.0001";
+         f.steam_running = true;
+       }},
+      {"joycond_rule", S::kWarning, "90-footing.rules",
+       [](Facts& f) {
+         f.hid[0].sysfs_id = "0005:057E:2009.0001";
+         f.joycond_rules = {"/usr/lib/udev/rules.d/89-joycond.rules"};
+       }},
       {"no_adapter", S::kError, "lsusb",
        [](Facts& f) {
          f.adapters.clear();

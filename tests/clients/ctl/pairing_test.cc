@@ -10,10 +10,10 @@ using ::testing::Not;
 
 const Host kReady = {"hci0", "5.66", false};
 
-TEST(Pairing, KnowsItsThreeKinds) {
+TEST(Pairing, KnowsItsKinds) {
   EXPECT_EQ(KindNamed("board"), Kind::kBoard);
-  EXPECT_EQ(KindNamed("joycon"), std::nullopt);
-  for (const Kind kind : {Kind::kWiimote, Kind::kBoard, Kind::kMove}) {
+  EXPECT_EQ(KindNamed("gamepad"), std::nullopt);
+  for (const Kind kind : {Kind::kWiimote, Kind::kBoard, Kind::kMove, Kind::kJoycon}) {
     EXPECT_EQ(KindNamed(Name(kind)), kind);
   }
 }
@@ -53,7 +53,7 @@ TEST(Pairing, SaysFirstWhatTheHostLacks) {
 }
 
 TEST(Pairing, EndsInFootingdForEveryKind) {
-  for (const Kind kind : {Kind::kWiimote, Kind::kBoard, Kind::kMove}) {
+  for (const Kind kind : {Kind::kWiimote, Kind::kBoard, Kind::kMove, Kind::kJoycon}) {
     const auto out = ToJson(kind, kReady);
     EXPECT_EQ(out["adapter"], "hci0");
     EXPECT_EQ(out["steps"].back()["run"], "footing-ctl devices");

@@ -64,7 +64,17 @@ TEST(DoctorParse, SeesTheUdevRule) {
 TEST(DoctorParse, KnowsOurDevicesByTheirSysfsNames) {
   EXPECT_TRUE(IsOurs("0005:057E:0330.0003"));
   EXPECT_TRUE(IsOurs("0003:054C:03D5.0001"));
-  EXPECT_FALSE(IsOurs("0005:057E:2009.0001"));
+  EXPECT_TRUE(IsOurs("0005:057E:2007.0001"));
+  EXPECT_TRUE(IsOfSwitch("0005:057E:2009.0001"));
+  EXPECT_FALSE(IsOurs("0003:057E:2009.0001"));  // On its cable it speaks another protocol.
+  EXPECT_FALSE(IsOurs("0005:057E:2069.0001"));
+}
+
+TEST(DoctorParse, FindsTheRuleOfJoycond) {
+  EXPECT_TRUE(
+      TakesSwitchNodes("KERNEL==\"hidraw*\", SUBSYSTEM==\"hidraw\", KERNELS==\"0005:057E:2009.*\", "
+                       "MODE=\"0600\"\n"));
+  EXPECT_FALSE(TakesSwitchNodes("KERNEL==\"hidraw*\", KERNELS==\"0005:057E:*\", MODE=\"0660\"\n"));
 }
 
 TEST(DoctorParse, ReadsWhoRunsAProcess) {
