@@ -38,6 +38,10 @@ MOVE2_PIECES = [
 ]
 MOVE_REPORT = ("01 00 00 00 06 00 00 7f 7f 7f 7f c0 05 2d 89 a8 7f 77 8d 1e 89 a0 7f 6f 8d f8 7f 02 80"
                "fb 7f f8 7f 03 80 fb 7f 7d 10 9e fa 10 55 0a 00 00 00 00 00")
+JOYCON_INFO = "21 14 8e 00 00 00 17 53 85 00 00 00 c0 82 02 04 07 01 02 58 2f 40 f8 c6 18 03 01" + "00" * 22
+JOYCON_MOTION = "30 3b 8e 00 00 00 55 77 8b 00 00 00 c0" + "5e 01 20 00 f1 0f 0b 00 f0 ff 02 00" * 3
+JOYCON_BLOCK = "14 ff 9d ff 53 00 00 40 00 40 00 40 f5 ff f0 ff 02 00 e7 3b e7 3b e7 3b"
+JOYCON_STICK = "ba 15 62 11 b8 7f 29 06 5b"
 MOTION_PLUS_PACKET = "00 20 F0 7E 7E 76"
 NUNCHUK_PACKET = "80 81 7D 7A B1 0B"
 
@@ -98,6 +102,15 @@ def seeds() -> dict[str, bytes]:
         **make_motion_seeds.seeds(),
         **make_protocol_seeds.seeds(),
         **make_recording_seeds.seeds(),
+        "joycon/blocks": b"\x00" + string(raw(JOYCON_BLOCK)) + string(raw("b2 a1 " + JOYCON_BLOCK))
+                         + string(raw(JOYCON_STICK * 2)) + string(raw(("b2 a1 " + JOYCON_STICK) * 2)),
+        "joycon/handshake": b"\x81" + string(b"") * 4 + steps(
+            [raw(JOYCON_INFO)] + [raw("ff " + JOYCON_BLOCK), raw("ff b2 a1 " + JOYCON_BLOCK)]
+            + [raw("ff " + JOYCON_STICK * 2), raw("ff " + ("b2 a1 " + JOYCON_STICK) * 2)] + [raw("ff"), raw("ff")]
+            + [raw(JOYCON_MOTION)] * 6 + [raw("3f 00 00 08 00 80 00 80 00 80 00 80")]),
+        "joycon/off": b"\x02" + string(b"") * 4 + steps([raw("ff")] * 8 + [bytes([0x30]) + bytes(48)] * 8),
+        "joycon/attitude": b"\x00" + string(b"") * 4 + steps([raw("ff")] * 8 + [
+            bytes([0x30, i]) + bytes(range(i, i + 47)) for i in range(0, 200, 9)]),
         "handshake/wiimote": b"\x00" + steps(wiimote),
         "handshake/board": b"\x01" + steps(board),
     }
