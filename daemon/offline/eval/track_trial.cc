@@ -266,7 +266,7 @@ class TrackTrial {
     driver_.SeeTrack(engine_.track());
     if (user.interface) {
       embodied_.emplace(Embodied{{*user.interface, StyleOf(user), user.seed, user.turn_by},
-                                 {*user.interface, user.turn_by, user.seed}});
+                                 {*user.interface, user.turn_by, user.seed, user.joycons}});
     }
     if (embodied_) WaitForTrial();
     inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), user.seed)};
@@ -304,6 +304,8 @@ class TrackTrial {
                                 .turn_per_step_rad = wanted.turn_rad};
       return;
     }
+    embodied_->person.Advance(time_s - HeldJoycons::kStepS, wanted);
+    embodied_->devices.Feel(embodied_->person.felt());
     embodied_->person.Advance(time_s, wanted);
     inputs_.features = embodied_->devices.Take(embodied_->person.felt());
     ++inputs_.features_number;
@@ -426,27 +428,61 @@ std::vector<features::Member> MembersFor(UserInterface interface, TurnSource tur
 
 }  // namespace
 
-UserDevices::UserDevices(UserInterface interface, TurnSource turn_by, std::uint64_t seed)
+UserDevices::UserDevices(UserInterface interface, TurnSource turn_by, std::uint64_t seed,
+                         bool joycons)
     : interface_(interface), random_(seed), chain_(MembersFor(interface, turn_by)) {
+  if (joycons) joycons_ = std::make_unique<HeldJoycons>(stream::RolesOf(interface, turn_by), seed);
   for (const std::uint64_t board : {1u, 2u}) {
     cells_.emplace_back(virtual_sensors::CellErrorConfig{
         .gain_spread = kCellGainSpread, .noise_kg = kCellNoiseKg, .seed = seed + board});
   }
 }
 
+void UserDevices::Feel(const users::Felt& felt) {
+  if (joycons_) joycons_->Feel(felt);
+}
+
+void UserDevices::TakeJoycons(const users::Felt& felt) {
+  joycons_->Feel(felt);
+  const sensor::TickContent content = joycons_->Tick();
+  if (interface_ != UserInterface::kJoystick) {
+    if (!content.features.empty()) TakeFeatures(content.features.front());
+    return;
+  }
+  mapping::StickInput& stick = inputs_.stick;
+  for (const stream::NunchukSample& sample : content.nunchuks) {
+    stick.present = true;
+    stick.x = sample.stick_x;
+    stick.y = sample.stick_y;
+  }
+  for (const stream::MotionSample& sample : content.motion) {
+    constexpr std::uint32_t kButtonA = 0x0008;
+    const bool pressed = (sample.buttons & kButtonA) != 0;
+    if (pressed && !stick.pressed) ++stick.presses;
+    stick.pressed = pressed;
+  }
+}
+
+/// Shins and the trunk have a mounting; hands and the head need none.
+void UserDevices::TakeFeatures(const stream::RigFeatures& features) {
+  std::uint32_t mounted_roles = 0;
+  for (const stream::DeviceFeatures& device : features.devices) {
+    const DeviceRole role = device.role;
+    const bool mounted =
+        role == DeviceRole::kLeftLeg || role == DeviceRole::kRightLeg || role == DeviceRole::kTrunk;
+    if (mounted) mounted_roles |= stream::RoleBit(role);
+  }
+  mapping::TakeFeatures(features, mounted_roles, inputs_);
+}
+
 void UserDevices::TakeRemotes(const users::Felt& felt) {
   const std::int64_t now_ns = SecondsToNanoseconds(static_cast<double>(ticks_) * kTickS);
-  std::uint32_t mounted_roles = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(felt.remote_count); ++i) {
     const users::FeltRemote& remote = felt.remotes[i];
     const auto reading = wrists::Read(sensor_, remote.specific_force_S_mps2, random_);
     chain_.Add(DeviceOf(remote.role), now_ns, reading.specific_force_mps2, reading.clipped_axes);
-    // Shins and the trunk have a mounting; hands and the head need none.
-    const bool mounted = remote.role == DeviceRole::kLeftLeg ||
-                         remote.role == DeviceRole::kRightLeg || remote.role == DeviceRole::kTrunk;
-    if (mounted) mounted_roles |= stream::RoleBit(remote.role);
   }
-  mapping::TakeFeatures(chain_.Compute(now_ns), mounted_roles, inputs_);
+  TakeFeatures(chain_.Compute(now_ns));
 }
 
 void UserDevices::TakeStick(const users::Felt& felt) {
@@ -480,6 +516,10 @@ void UserDevices::TakeBoards(const users::Felt& felt) {
 
 mapping::Inputs UserDevices::Take(const users::Felt& felt) {
   ++ticks_;
+  if (joycons_) {
+    TakeJoycons(felt);
+    return inputs_;
+  }
   switch (interface_) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:

@@ -39,6 +39,7 @@ struct TrackOptions {
   users::StyleWish style;
   std::string table;
   std::string turn_by;
+  std::string devices = "wiimote";
   std::string start = "stand";
   std::optional<double> seconds;
   std::string trace;
@@ -79,6 +80,10 @@ Result<TrackUser> UserFor(const TrackOptions& options) {
   const bool styled = options.style.tempo || options.style.amplitude || options.style.asymmetry;
   if (!user.interface && (styled || !options.table.empty())) {
     return UsageError("--interface direct has neither a body nor a mapping table");
+  }
+  user.joycons = options.devices == "joycon";
+  if (user.joycons && (!user.interface || *user.interface == stream::UserInterface::kBoards)) {
+    return UsageError("--devices joycon needs --interface wrist, arm, leg or joystick");
   }
   user.style = options.style;
   user.mapping_table = options.table;
@@ -187,6 +192,7 @@ nlohmann::ordered_json Report(const TrackOptions& options, std::uint64_t seed,
           {"grip_deg", OrNull(options.grip_deg)},
           {"grip_way", options.grip_deg ? options.grip_way : "drawn"},
           {"turn_by", options.turn_by},
+          {"devices", options.devices},
           {"start", options.start},
           {"tempo", OrNull(options.style.tempo)},
           {"amplitude", OrNull(options.style.amplitude)},
@@ -242,6 +248,10 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
   command->add_option(
       "--turn-by", options->turn_by,
       "Body part that steers with the interface leg: head, feet or trunk (default head)");
+  command
+      ->add_option("--devices", options->devices,
+                   "Devices that the user holds: wiimote or joycon (default wiimote)")
+      ->check(CLI::IsMember({"wiimote", "joycon"}));
   command
       ->add_option("--seconds", options->seconds,
                    "Duration of a trial, s (default: to the finish line, at most 600)")
