@@ -109,7 +109,7 @@ void CollectProcesses(const fs::path& root, Facts& facts) {
     if (error != std::errc() || end != number.data() + number.size()) continue;
     const std::string name = FirstLine(process / "comm");
     if (name == "bluetoothd") facts.bluetoothd_running = true;
-    if (name == "steam") facts.steam_running = true;
+    if (name == "steam") facts.others.steam_running = true;
     if (name != "footingd" || !OwnsDevices(ReadFile(process / "cmdline"))) continue;
     doctor::User user = doctor::ParseProcess(ReadFile(process / "status"));
     user.name = UserName(root, user.uid);
@@ -152,7 +152,7 @@ void CollectHid(const fs::path& root, Facts& facts) {
 void CollectModules(const fs::path& root, Facts& facts) {
   const std::vector<const char*> folders = {"etc/modprobe.d", "run/modprobe.d",
                                             "usr/lib/modprobe.d"};
-  facts.blacklists = FilesWith(root, folders, ".conf", doctor::BlacklistsWiimote);
+  facts.others.blacklists = FilesWith(root, folders, ".conf", doctor::BlacklistsWiimote);
   const std::string now = FirstLine(root / "sys/module/hid/parameters/ignore_special_drivers");
   // Before hid is loaded the options of its loading decide.
   facts.ignore_special_drivers =
@@ -216,7 +216,7 @@ Facts CollectHost(const std::string& root) {
   const std::vector<const char*> rules = {"etc/udev/rules.d", "run/udev/rules.d",
                                           "usr/lib/udev/rules.d", "usr/local/lib/udev/rules.d"};
   facts.udev_rules = FilesWith(base, rules, ".rules", doctor::HasRule);
-  facts.joycond_rules = FilesWith(base, rules, ".rules", doctor::TakesSwitchNodes);
+  facts.others.joycond_rules = FilesWith(base, rules, ".rules", doctor::TakesSwitchNodes);
   facts.input_config = doctor::ParseIni(ReadFile(base / "etc/bluetooth/input.conf"));
   if (root == "/") AskBlueZ(facts);
   return facts;

@@ -180,7 +180,7 @@ struct UserOptions {
   std::optional<std::uint64_t> style_seed;
   users::StyleWish style;
   std::string devices = "wiimote";
-  Held held;  ///< What is plugged in.
+  Held held;  ///< Extensions plugged in.
 };
 
 /// The subcommand user and its flags. `options` must outlive the parsing.

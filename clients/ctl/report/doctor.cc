@@ -710,7 +710,7 @@ std::vector<Symptom> NodeMissing(const Facts& facts) {
 std::vector<Symptom> Blacklisted(const Facts& facts) {
   if (facts.ignore_special_drivers) return {};
   std::vector<Symptom> found;
-  for (const std::string& file : facts.blacklists) {
+  for (const std::string& file : facts.others.blacklists) {
     found.push_back({Severity::kError,
                      "hid_wiimote is blacklisted, so Wiimotes and boards get no hidraw node", file,
                      "sudo sed -i '/hid.wiimote/d' " + file +
@@ -749,7 +749,7 @@ std::vector<Symptom> DriverInTheWay(const Facts& facts) {
 }
 
 std::vector<Symptom> SteamWrites(const Facts& facts) {
-  if (!facts.steam_running || !AnyOfSwitch(facts)) return {};
+  if (!facts.others.steam_running || !AnyOfSwitch(facts)) return {};
   return {{Severity::kNote,
            "Steam is running; it sets up Joy-Cons and Pro Controllers in its own way, and footingd "
            "sets them up again",
@@ -758,11 +758,11 @@ std::vector<Symptom> SteamWrites(const Facts& facts) {
 }
 
 std::vector<Symptom> JoycondRule(const Facts& facts) {
-  if (facts.joycond_rules.empty() || !AnyOfSwitch(facts)) return {};
+  if (facts.others.joycond_rules.empty() || !AnyOfSwitch(facts)) return {};
   return {
       {Severity::kWarning,
        "joycond's udev rule shuts the node of a Pro Controller after Footing's rule opened it",
-       facts.joycond_rules.front(),
+       facts.others.joycond_rules.front(),
        "sudo apt remove joycond, or let Footing's rule come last: sudo cp "
        "/usr/lib/udev/rules.d/70-footing.rules /etc/udev/rules.d/90-footing.rules && sudo udevadm "
        "control --reload && sudo udevadm trigger --subsystem-match=hidraw"}};

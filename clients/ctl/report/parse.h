@@ -51,6 +51,14 @@ struct KnownDevice {
   bool connected = false;
 };
 
+/// Programs and files that keep devices from footingd, or write to them beside it.
+struct Others {
+  std::vector<std::string> blacklists;  ///< Files that blacklist hid_wiimote.
+  bool steam_running = false;
+  std::vector<std::string>
+      joycond_rules;  ///< Files that shut the nodes of the Switch's controllers.
+};
+
 /// All facts that the doctor's checks read.
 struct Facts {
   User user;
@@ -61,11 +69,8 @@ struct Facts {
 
   std::vector<HidDevice> hid;
   std::vector<std::string> udev_rules;  ///< Files with a rule for the hidraw nodes of our devices.
-  std::vector<std::string> blacklists;  ///< Files that blacklist hid_wiimote.
   bool ignore_special_drivers = false;
-  /// Programs that write to the Switch's controllers, too.
-  bool steam_running = false;
-  std::vector<std::string> joycond_rules;  ///< Files that shut the controllers' nodes.
+  Others others;
 
   std::vector<Adapter> adapters;
   bool bluetoothd_running = false;

@@ -14,7 +14,7 @@ constexpr std::size_t kReportBytes = 49;
 constexpr std::int64_t kTimerNs = 5'000'000;
 constexpr double kCountsPerG = 4096;
 constexpr double kSpanDegps = 936;
-constexpr double kForceNoiseCounts = 2.9, kTurnNoiseCounts = 1;  // Of recorded units at rest.
+constexpr double kForceNoiseCounts = 2.9, kTurnNoiseCounts = 1;  // As recorded at rest.
 
 constexpr std::uint8_t kInfo = 0x02, kMode = 0x03, kRead = 0x10, kLamps = 0x30, kSensor = 0x40,
                        kVibration = 0x48;
@@ -103,12 +103,12 @@ std::vector<Report> Joycon::HandleOutput(std::int64_t now_ns,
   PutHead(now_ns, last_, reply);
   reply[13] = 0x80;
   reply[14] = report[kSubcommandAt];
-  Obey(report.subspan(kSubcommandAt), reply);
+  Execute(report.subspan(kSubcommandAt), reply);
   return {reply};
 }
 
 /// `report`: subcommand and arguments.
-void Joycon::Obey(std::span<const std::uint8_t> report, Report& reply) {
+void Joycon::Execute(std::span<const std::uint8_t> report, Report& reply) {
   const std::uint8_t argument = report.size() > 1 ? report[1] : 0;
   switch (report[0]) {
     case kInfo: {

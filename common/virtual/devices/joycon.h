@@ -74,7 +74,7 @@ class Joycon {
  private:
   void PutHead(std::int64_t now_ns, const JoyconSensors& sensors, Report& report) const;
   void PutSample(const JoyconSensors& sensors, std::size_t at, Report& report);
-  void Obey(std::span<const std::uint8_t> report, Report& reply);
+  void Execute(std::span<const std::uint8_t> report, Report& reply);
   Eigen::Vector3d Raw(const Eigen::Vector3d& of_S) const;
 
   JoyconModel model_;

@@ -24,7 +24,7 @@ class HeldJoycons {
 
   /// The next sample of every sensor.
   void Feel(const users::Felt& felt);
-  /// What footingd publishes now.
+  /// The content that footingd publishes now.
   sensor::TickContent Tick() { return hub_.Tick(now_ns_); }
 
  private:

@@ -49,7 +49,7 @@ struct Decoded {
   bool buttons_only = false;
   /// The device took a new measurement: some sample differs from the report before.
   bool changed = false;
-  /// Of a device that sends it; without, the samples are spread over a typical report.
+  /// Only from a device that sends it; without, the samples are spread over a typical report.
   std::optional<OwnTime> own_time;
 
   bool empty() const {

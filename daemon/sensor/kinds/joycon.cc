@@ -216,7 +216,7 @@ bool IsJump(const reports::JoyconSample& before, const reports::JoyconSample& af
 
 }  // namespace
 
-void Decoder::Judge(const JoyconReport& report) {
+void Decoder::UpdateSensor(const JoyconReport& report) {
   const reports::JoyconSample kNone;
   const bool off = std::all_of(report.samples.begin(), report.samples.end(),
                                [&](const auto& sample) { return sample == kNone; });
@@ -245,7 +245,7 @@ decode::Decoded Decoder::Take(const calibration::JoyconCalibration& calibration,
     // Some adapters are sent reports sooner than every 15 ms, and none of their samples repeats.
     decoded.own_time = {*elapsed_s, std::min(kSpacingS, *elapsed_s / 3)};
   }
-  Judge(report);
+  UpdateSensor(report);
   if (sensor_ != Sensor::kOff) TakeMotion(calibration, report, decoded);
   TakeStick(calibration, report, decoded);
   if (model_ == JoyconModel::kPro) TakeGamepad(calibration, report, decoded);

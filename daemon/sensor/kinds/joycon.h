@@ -37,7 +37,7 @@ class Handshake {
   /// The motor is wanted.
   void AllowRumble();
 
-  /// What can be known of calibration is, and samples have been asked for.
+  /// Calibration is known as far as it can be, and samples have been asked for.
   bool settled() const { return settled_; }
   const calibration::JoyconCalibration& calibration() const { return calibration_; }
   std::uint64_t mode_reasserts() const { return mode_reasserts_; }
@@ -77,7 +77,7 @@ class Handshake {
   std::uint8_t leds_ = 0;
   bool rumble_wanted_ = false;
   std::int64_t samples_ns_ =
-      0;  ///< Of the newest report with samples, or when they were asked for.
+      0;  ///< Arrival of the newest report with samples, or when they were asked for.
   std::int64_t silent_ns_ = kSilentNs;
   std::uint64_t mode_reasserts_ = 0;
   bool sensor_works_ = true;
@@ -88,7 +88,7 @@ class Handshake {
 /// Samples of the reports. A plain value.
 class Decoder {
  public:
-  /// What the motion sensor sends.
+  /// State of the motion sensor.
   enum class Sensor {
     kWorks,
     kOff,        ///< Zeros throughout: switched off, or a copy without one.
@@ -97,13 +97,13 @@ class Decoder {
 
   explicit Decoder(reports::JoyconModel model) : model_(model) {}
 
-  /// Of a report with samples.
+  /// Samples of a report that has them.
   decode::Decoded Take(const calibration::JoyconCalibration& calibration, std::int64_t received_ns,
                        const reports::JoyconReport& report);
   Sensor sensor() const { return sensor_; }
 
  private:
-  void Judge(const reports::JoyconReport& report);
+  void UpdateSensor(const reports::JoyconReport& report);
   void TakeMotion(const calibration::JoyconCalibration& calibration,
                   const reports::JoyconReport& report, decode::Decoded& decoded);
   void TakeStick(const calibration::JoyconCalibration& calibration,

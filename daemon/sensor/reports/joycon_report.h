@@ -93,8 +93,8 @@ struct JoyconReport {
   bool charging = false;
   std::uint32_t buttons = 0;            ///< Bits of JoyconButton.
   std::array<JoyconStick, 2> sticks;    ///< Left, right.
-  std::optional<JoyconReply> reply;     ///< Of report 21.
-  bool has_samples = false;             ///< Of reports 30 to 33.
+  std::optional<JoyconReply> reply;     ///< In report 21.
+  bool has_samples = false;             ///< In reports 30 to 33.
   std::array<JoyconSample, 3> samples;  ///< Older first.
 };
 
@@ -176,7 +176,7 @@ JoyconCalibration ParseJoycon(const JoyconBlocks& blocks);
 struct JoyconReading {
   Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
-  std::uint32_t clipped_axes = 0;  ///< Of the accelerometer; bits 0, 1, 2: x, y, z of S.
+  std::uint32_t clipped_axes = 0;  ///< Accelerometer; bits 0, 1, 2: x, y, z of S.
   bool angular_velocity_clipped = false;
 };
 JoyconReading Calibrate(const JoyconCalibration& calibration, reports::JoyconModel model,

@@ -12,7 +12,7 @@ namespace footing::link {
 struct Writing {
   std::int64_t interval_ns = 10'000'000;         ///< Least time between two reports,
   std::int64_t rumble_interval_ns = 10'000'000;  ///< and before one for the motor alone.
-  std::int64_t rumble_repeat_ns = 0;  ///< The motor stops unless told so often; 0: never.
+  std::int64_t rumble_repeat_ns = 0;             ///< Interval of the motor's repeats; 0: none.
   reports::OutputReport (*rumble_only)() = reports::RumbleOnly;
   void (*set_rumble)(reports::OutputReport& report, bool on) = reports::SetRumbleBit;
 };

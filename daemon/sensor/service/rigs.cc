@@ -162,9 +162,9 @@ void RigTable::Rebuild(const DeviceTable& devices) {
   std::map<std::string, std::vector<features::Member>> members;
   for (const auto& device : devices) {
     const Binding& binding = device->binding();
-    const bool worn = device->placement() == decode::Placement::kOnBody ||
-                      device->placement() == decode::Placement::kByChoice;
-    if (!worn || binding.role == DeviceRole::kUnspecified) continue;
+    const bool on_body = device->placement() == decode::Placement::kOnBody ||
+                         device->placement() == decode::Placement::kByChoice;
+    if (!on_body || binding.role == DeviceRole::kUnspecified) continue;
     auto& rig = members[binding.rig];
     const auto holder = std::find_if(rig.begin(), rig.end(), [&binding](const auto& member) {
       return member.role == binding.role;

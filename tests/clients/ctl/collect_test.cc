@@ -105,7 +105,7 @@ TEST_F(Collect, ReadsRulesBlacklistsAndSettings) {
   Write("etc/group", "footing:x:990:nobody-here\n");
   const auto facts = Facts();
   EXPECT_THAT(facts.udev_rules, ElementsAre("/usr/lib/udev/rules.d/70-footing.rules"));
-  EXPECT_THAT(facts.blacklists, ElementsAre("/etc/modprobe.d/wii.conf"));
+  EXPECT_THAT(facts.others.blacklists, ElementsAre("/etc/modprobe.d/wii.conf"));
   EXPECT_EQ(facts.input_config.at("ClassicBondedOnly"), "false");
   EXPECT_EQ(facts.footing_gid, 990u);
   EXPECT_FALSE(facts.user_listed_in_group);

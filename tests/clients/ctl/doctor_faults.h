@@ -94,7 +94,7 @@ inline std::vector<Case> Cases() {
        }},
       {"driver_blacklisted", S::kError,
        "sed -i '/hid.wiimote/d' /etc/modprobe.d/no-wii.conf && sudo modprobe hid_wiimote",
-       [](Facts& f) { f.blacklists = {"/etc/modprobe.d/no-wii.conf"}; }},
+       [](Facts& f) { f.others.blacklists = {"/etc/modprobe.d/no-wii.conf"}; }},
       {"wrong_driver", S::kWarning, "stop the program",
        [](Facts& f) { f.hid[0].driver = "steam"; }},
       {"driver_in_the_way", S::kNote, "update-initramfs",
@@ -102,12 +102,12 @@ inline std::vector<Case> Cases() {
       {"steam_writes", S::kNote, "Controller",
        [](Facts& f) {
          f.hid[0].sysfs_id = "0005:057E:2006.0001";
-         f.steam_running = true;
+         f.others.steam_running = true;
        }},
       {"joycond_rule", S::kWarning, "90-footing.rules",
        [](Facts& f) {
          f.hid[0].sysfs_id = "0005:057E:2009.0001";
-         f.joycond_rules = {"/usr/lib/udev/rules.d/89-joycond.rules"};
+         f.others.joycond_rules = {"/usr/lib/udev/rules.d/89-joycond.rules"};
        }},
       {"no_adapter", S::kError, "lsusb",
        [](Facts& f) {

@@ -389,7 +389,7 @@ TEST(Joycon, IsLiveWithinTwoSecondsWithATenthOfAllSubcommandsLost) {
   std::vector<double> times;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Conversation one(kModels[seed % 3], seed);
-    one.loss = 0.1;  // Of either direction: a fifth of the exchanges fail.
+    one.loss = 0.1;  // In either direction: a fifth of the exchanges fail.
     times.push_back(one.UntilLive());
     one.loss = 0;
     one.Run(0.1);
