@@ -13,6 +13,7 @@
 
 #include "clients/log/contents.h"
 #include "clients/log/export_bodies.h"
+#include "common/base/low_pass.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/board/geometry.h"
@@ -20,7 +21,6 @@
 #include "common/body/body.h"
 #include "common/recording/recording_writer.h"
 #include "common/runtime/files.h"
-#include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/table.h"
 #include "common/virtual/options/load.h"
@@ -304,7 +304,7 @@ VectorXd ForceOf(const VectorXd& height_m, double rate_hz, double weight_n) {
   for (Index i = filled.size() - 2; i >= 0; --i) {
     if (!std::isfinite(height_m(i)) && filled(i) == 0) filled(i) = filled(i + 1);
   }
-  const VectorXd z = motion::LowPass(filled.transpose(), rate_hz, kMarkersCutoffHz).row(0);
+  const VectorXd z = footing::LowPass(filled.transpose(), rate_hz, kMarkersCutoffHz).row(0);
   VectorXd force = VectorXd::Constant(z.size(), kUnmeasured);
   for (Index i = 1; i + 1 < z.size(); ++i) {
     if (!height_m.segment(i - 1, 3).allFinite()) continue;

@@ -10,8 +10,8 @@
 
 #include <Eigen/Dense>
 
+#include "common/base/low_pass.h"
 #include "common/base/text.h"
-#include "common/virtual/motion/edit.h"
 
 namespace footing::log_client {
 namespace {
@@ -60,7 +60,7 @@ VectorXd Filled(const VectorXd& values) {
 }
 
 VectorXd LowPass(const VectorXd& values, double rate_hz, double cutoff_hz) {
-  return motion::LowPass(Filled(values).transpose(), rate_hz, cutoff_hz).row(0);
+  return footing::LowPass(Filled(values).transpose(), rate_hz, cutoff_hz).row(0);
 }
 
 /// Between the samples before and after `place`; NaN outside and beside a gap.
