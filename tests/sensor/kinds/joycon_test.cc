@@ -467,8 +467,8 @@ TEST(Joycon, WhatAnotherProgramChangedIsSetAgain) {
   one.Run(0.3);
   EXPECT_EQ(one.device.mode(), 0x30);
   EXPECT_EQ(one.Status().mode_reasserts, 1u);
-  one.Run(3);
   for (const std::uint8_t mode : {0, 2}) {
+    one.Run(3);
     one.device.set_sensor_mode(mode);
     one.Run(0.4);
     EXPECT_EQ(one.device.sensor_mode(), 1);
