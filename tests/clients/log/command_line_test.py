@@ -57,7 +57,7 @@ def main(program, writer):
         assert len(motion.read_text().splitlines()) == 300, motion
         assert run("export", repaired, "--format", "bids", "--out", folder / "bids", "--subject", "p_1").returncode == 2
 
-        for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bids, bvh, trc, mot, c3d, gltf"),
+        for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bids, foxglove, bvh, trc, mot, c3d, gltf"),
                             (("export", whole, "--format", "csv", "--out", folder / "s", "--skeleton", "humanoid"), "needs --format bvh"),
                             (("export", whole, "--format", "xdf", "--out", folder / "s", "--tidy"), "needs --format csv"),
                             (("export", whole, "--format", "csv", "--out", folder / "s", "--subject", "02"), "need --format bids"),

@@ -2,7 +2,7 @@
 // Foxglove's own package has for their schemas. Usage: node foxglove.mjs FILE PROTO_FOLDER. Runs from a copy beside
 // node_modules.
 import {mkdir, readFile, writeFile} from "node:fs/promises";
-import schemasOfFoxglove from "@foxglove/schemas/internal";
+import schemasOfFoxglove from "@foxglove/schemas/internal.js";
 import {McapStreamReader} from "@mcap/core";
 import {decompress} from "fzstd";
 
