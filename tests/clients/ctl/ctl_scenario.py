@@ -166,7 +166,7 @@ def check_assign(console, devices):
 def check_refusals(console):
     console.refused(3, "tare", "all", says="no board")
     console.refused(2, "tare", "left_hand", says="is not a Balance Board")
-    console.refused(2, "pair", "joycon", says="wiimote, board or move")
+    console.refused(2, "pair", "dualsense", says="joycon")
     console.refused(1, "assign", "left_hand", "r" * 65 + "/head", says="must be 1 to 64 bytes")
     console.refused(1, "assign", "left_hand", "a\x1b[2J/head", says="assign_role.rig has control characters")
     console.refused(2, "lease", says="add --of footingd")
