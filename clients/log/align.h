@@ -19,7 +19,7 @@ namespace footing::log_client {
 /// message, as `recording_time_s` of the exports.
 struct BoardForces {
   Series total;  ///< Sum of the boards; NaN where one of them says nothing.
-  std::array<Eigen::VectorXd, 2> load_n;    ///< Left, right; empty where there is no such board.
+  std::array<Eigen::VectorXd, 2> load_n;    ///< Left, right; empty without that board.
   std::array<Eigen::Matrix2Xd, 2> cop_W_m;  ///< NaN where it is not valid.
 };
 

@@ -1,6 +1,166 @@
-#include "clients/web/serve.h"
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
+#include <nlohmann/json.hpp>
+
+#include "clients/web/web_server.h"
+#include "common/base/json_text.h"
 #include "common/cli/cli.h"
+#include "common/net/access.h"
+#include "common/qr/qr_code.h"
 #include "common/runtime/log.h"
+#include "common/runtime/service_manager.h"
+#include "common/runtime/timer.h"
+
+namespace footing::web {
+namespace {
+
+struct ServeFlags {
+  std::vector<std::string> listen, connect, host_names;
+  std::string devices, token_file, identity_file;
+  double seconds = 0;
+  bool invite = false, phones = false, json = false;
+
+  Result<WebOptions> Options() const {
+    WebOptions options;
+    for (const std::string& text :
+         listen.empty() ? std::vector<std::string>{"tcp:127.0.0.1:7480"} : listen) {
+      const auto address = transport::ParseAddress(text);
+      if (!address) return address.error();
+      options.listen.push_back(*address);
+    }
+    for (const std::string& text : connect) {
+      const auto address = transport::ParseAddress(text);
+      if (!address) return address.error();
+      options.servers.push_back(*address);
+    }
+    if (connect.empty()) {
+      options.servers = {transport::DefaultAddress("simulation"),
+                         transport::DefaultAddress("sensor")};
+    }
+    const auto to = transport::AddressOrDefault(devices, "devices");
+    if (!to) return to.error();
+    if (to->kind != transport::Address::Kind::kUnix) {
+      return UsageError("--devices " + devices + ": must be footingd's unix:PATH on this host");
+    }
+    options.devices = *to;
+    if (!token_file.empty()) {
+      const auto token = transport::ReadTokenFile(token_file);
+      if (!token) return token.error();
+      options.token = *token;
+    }
+    options.host_names = host_names;
+    options.identity_file = identity_file;
+    return options;
+  }
+};
+
+/// Prints the addresses for people: a code is for one browser, so the next one is shown when it is
+/// used.
+class Doorkeeper {
+ public:
+  Doorkeeper(boost::asio::io_context& io, WebServer& server, const ServeFlags& flags)
+      : timer_(io), server_(server), flags_(flags) {}
+
+  void Greet() {
+    if (flags_.json) return;
+    for (const transport::Address& address : server_.addresses()) {
+      std::cout << "serving " << address.Text() << "\n";
+    }
+    if (const std::string fingerprint = server_.fingerprint(); !fingerprint.empty()) {
+      std::cout << "certificate " << fingerprint
+                << "\nThe browser warns of it once, because no authority has signed it: compare, "
+                   "then proceed.\n";
+    }
+    Show();
+  }
+
+ private:
+  void Show() {
+    if (flags_.invite || !flags_.phones) Print("Live page", Right::kView);
+    if (flags_.phones) Print("A phone as a controller", Right::kDevices);
+    if (flags_.invite || flags_.phones) Wait();
+  }
+
+  void Print(const std::string& title, Right right) {
+    const std::string address = server_.Invite(right);
+    std::cout << title << ": " << address << "\n" << qr::QrCode(address) << std::flush;
+  }
+
+  void Wait() {
+    timer_.After(0.25, [this] {
+      const bool used = server_.counts().codes_used > used_;
+      used_ = server_.counts().codes_used;
+      if (!used) return Wait();
+      std::cout << "A browser has entered; the next one needs a new code.\n";
+      Show();
+    });
+  }
+
+  timer::Timer timer_;
+  WebServer& server_;
+  const ServeFlags& flags_;
+  std::uint64_t used_ = 0;
+};
+
+int Serve(const ServeFlags& flags) {
+  auto options = flags.Options();
+  if (!options) return cli::Report(options.error());
+  boost::asio::io_context io(1);
+  auto server = WebServer::Open(io, std::move(options).value());
+  if (!server) return cli::Report(server.error());
+  if (flags.json) {
+    nlohmann::ordered_json listening = nlohmann::ordered_json::array();
+    for (const auto& address : (*server)->addresses()) listening.push_back(address.Text());
+    std::cout << nlohmann::ordered_json{{"listening_on", listening},
+                                        {"page", (*server)->Invite(Right::kView)},
+                                        {"phone", (*server)->Invite(Right::kDevices)}}
+              << std::endl;
+  }
+  Doorkeeper doorkeeper(io, **server, flags);
+  doorkeeper.Greet();
+  service_manager::ProgramEnd end(io, [&io] { io.stop(); });
+  end.After(flags.seconds, [&io] { io.stop(); });
+  io.run();
+  return 0;
+}
+
+/// Adds the options; the result serves until the program is stopped, and returns its exit code.
+std::function<int()> AddServe(CLI::App& app) {
+  const auto flags = std::make_shared<ServeFlags>();
+  app.add_option(
+      "--listen", flags->listen,
+      "Address for browsers, tcp:127.0.0.1:PORT, or tls:HOST:PORT for other devices; may "
+      "be repeated (default: tcp:127.0.0.1:7480)");
+  app.add_option(
+      "--connect", flags->connect,
+      "Address of footingd or footing-sim; may be repeated (default: both of this host)");
+  app.add_option("--devices", flags->devices,
+                 "Device socket of footingd, for phones, unix:PATH (default: that of this host)");
+  app.add_option(
+      "--token-file", flags->token_file,
+      "File (mode 0600) whose token gives a page the role control (default: pages view)");
+  app.add_option("--identity-file", flags->identity_file,
+                 "File with the key and certificate for tls: (default: as footingd's)");
+  app.add_option("--host-name", flags->host_names,
+                 "Name by which browsers may call this host, besides its numeric addresses; may be "
+                 "repeated");
+  app.add_flag("--invite", flags->invite, "Show a QR code of the live page for each browser");
+  app.add_flag("--phones", flags->phones, "Show a QR code for each phone that is a controller");
+  app.add_option("--seconds", flags->seconds, "Duration, s (0: until SIGINT or SIGTERM)")
+      ->check(CLI::Range(0.0, 1e9));
+  app.add_flag("--json", flags->json, "Print the addresses as one JSON object");
+  return [flags] { return Serve(*flags); };
+}
+
+}  // namespace
+}  // namespace footing::web
 
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(

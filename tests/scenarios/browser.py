@@ -37,7 +37,7 @@ class Page:
     def wait_for(self, expression, timeout_s=PATIENCE_S):
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
-            # What is not there yet may throw.
+            # The page may not be there yet, and throw.
             value = self.evaluate(f"(() => {{ try {{ return {expression}; }} catch {{ return null; }} }})()")
             if value:
                 return value

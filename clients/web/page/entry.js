@@ -2,7 +2,7 @@
 const RETRY_MS = 1000;
 const pause = ms => new Promise(done => setTimeout(done, ms));
 
-// What footing-web says about itself and this browser; waits until it answers. `say` gets what is
+// Reads what footing-web says about itself and this browser; waits until it answers. `say` gets what is
 // wrong, in words.
 export async function enter(say) {
   const code = location.hash.slice(1);

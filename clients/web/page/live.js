@@ -17,7 +17,7 @@ const element = id => document.getElementById(id);
 const say = (id, text) => { if (element(id).textContent !== text) element(id).textContent = text; };
 const dark = window.matchMedia('(prefers-color-scheme: dark)');
 
-// What has come, by the server that sent it.
+// Messages that have come, by the server that sent it.
 const state = {
   sessions: [], devices: [], frames: [], past: [], lag: 0, simulation: null, sensor: null,
   reference: null, delay: 0, missed: 0, shownAge: NaN, ticks: 0,

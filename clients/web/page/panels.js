@@ -1,4 +1,4 @@
-// What the messages say, in words.
+// The messages in words.
 import { ENUMS } from './schema.js';
 
 const words = (enumeration, value) => (ENUMS[enumeration][value] ?? '').replaceAll('_', ' ');

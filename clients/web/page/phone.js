@@ -19,7 +19,7 @@ const POST = new URLSearchParams(location.search).has('post');
 const element = id => document.getElementById(id);
 const say = text => { if (element('status').textContent !== text) element('status').textContent = text; };
 
-// What lasts from Start to Stop.
+// State from Start to Stop.
 let run = null;
 let about = null;
 

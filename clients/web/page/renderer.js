@@ -148,7 +148,7 @@ function boxMesh() {
   return { vertices, indices };
 }
 
-// What is drawn: instances of each shape. Colours are arrays of three numbers.
+// The picture: instances of each shape. Colours are arrays of three numbers.
 export class Parts {
   constructor() { this.lists = { balls: [], limbs: [], boxes: [] }; }
 

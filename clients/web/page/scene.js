@@ -1,4 +1,4 @@
-// What the picture shows of a frame: the bird on its track, or a person on their boards.
+// The picture of a frame: the bird on its track, or a person on their boards.
 import { Parts, rgb } from './renderer.js';
 import { add, along, axesOf, between, clamp, cross, dot, length, lookAt, mix, multiply, normalized,
          perspective, scale, sub, turned, turnY, turnZ, wrapAngle } from './vector.js';
@@ -211,7 +211,7 @@ export class Scene {
     this.drawn = 0;
   }
 
-  // What the server retains: `skeletons` and `track` of a tick, `layout` of the rig's boards.
+  // Retained by the server: `skeletons` and `track` of a tick, `layout` of the rig's boards.
   take({ skeletons, track, layout }) {
     if (skeletons) this.skeletons = new Map(skeletons.skeletons.map(one => [one.character, one]));
     if (track) this.track = track;

@@ -270,7 +270,7 @@ def main(binaries):
         for name in ("F1", "Left", "Up", "plus", "F1", "F11", "F11"):
             person.key(name)
 
-        # What is no recording is refused, and the live view goes on.
+        # A file that is not a recording is refused, and the live view goes on.
         person.drop([stage.folder / "view.log"])
         person.drop([recording])
         stage.wait_for(lambda: person.find_window("Footing: a walk.mcap"), "the dropped recording")
