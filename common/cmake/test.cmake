@@ -1,5 +1,6 @@
 # What nearly every test includes, parsed once for all of them. A compiler takes it only where the options are the same, so
 # those of add_module_test stand here too.
+add_custom_target(release_tests)
 function(add_test_headers)
   file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cc CONTENT "int main() {}\n")
   add_executable(test_headers ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cc)
@@ -53,22 +54,33 @@ function(release_only_of name out)
   set(${out} "${left_out}" PARENT_SCOPE)
 endfunction()
 
+function(_add_cases name program filter labels limit_s quiet_s)
+  add_test(NAME ${name} COMMAND ${program} --gtest_brief=1
+           --gtest_output=xml:${PROJECT_BINARY_DIR}/tests/results/${name}.xml ${filter})
+  # What takes longest begins first.
+  set_tests_properties(${name} PROPERTIES ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT ${limit_s} COST ${quiet_s})
+  set_property(TEST ${name} PROPERTY LABELS ${labels})
+endfunction()
+
+# scripts/test runs each test once. Label sanitized: with sanitizers, so that its program is not compiled for the release run;
+# no_sanitizer: in the release build, whose target release_tests makes its program; neither: in both.
+
 # add_module_test(<name> SOURCES ... [DEPS ...] [LABELS ...] [QUIET_S seconds]): one GoogleTest program and one CTest test, whose
-# cases share a process. Its cases are counted from the XML that it writes (scripts/summarise-tests). With sanitizers
-# it leaves out the cases that tests/release_only.txt names.
+# cases share a process. Its cases are counted from the XML that it writes (scripts/summarise-tests). The cases that
+# tests/release_only.txt names are a second test of the release build, <name>.release_only.
 function(add_module_test name)
   cmake_parse_arguments(arg "" "QUIET_S" "SOURCES;DEPS;LABELS" ${ARGN})
   if(FOOTING_SANITIZE AND arg_LABELS MATCHES "long")
     return()  # Never run with sanitizers.
   endif()
-  set(words --gtest_brief=1 --gtest_output=xml:${PROJECT_BINARY_DIR}/tests/results/${name}.xml)
-  if(FOOTING_SANITIZE)
-    release_only_of(${name} left_out)
-    if(left_out STREQUAL "all")
-      return()
-    elseif(left_out)
-      list(APPEND words --gtest_filter=-${left_out})
-    endif()
+  release_only_of(${name} release_only)
+  if(FOOTING_SANITIZE AND release_only STREQUAL "all")
+    return()
+  elseif(release_only STREQUAL "all")
+    list(APPEND arg_LABELS no_sanitizer)
+    set(release_only "")
+  elseif(NOT arg_LABELS MATCHES "long|no_sanitizer")
+    list(APPEND arg_LABELS sanitized)
   endif()
   if(NOT arg_QUIET_S)
     set(arg_QUIET_S ${QUIET_S_OF_MOST})
@@ -90,8 +102,15 @@ function(add_module_test name)
                              FOOTING_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_precompile_headers(${name} REUSE_FROM test_headers)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  add_test(NAME ${name} COMMAND ${name} ${words})
-  # What takes longest begins first.
-  set_tests_properties(${name} PROPERTIES ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT ${limit_s} COST ${arg_QUIET_S})
-  set_property(TEST ${name} PROPERTY LABELS ${arg_LABELS})
+  if(arg_LABELS MATCHES "no_sanitizer" OR (release_only AND NOT FOOTING_SANITIZE))
+    add_dependencies(release_tests ${name})
+  endif()
+  set(cases "")
+  if(release_only)
+    set(cases --gtest_filter=-${release_only})
+  endif()
+  _add_cases(${name} ${name} "${cases}" "${arg_LABELS}" ${limit_s} ${arg_QUIET_S})
+  if(release_only AND NOT FOOTING_SANITIZE)
+    _add_cases(${name}.release_only ${name} --gtest_filter=${release_only} no_sanitizer ${limit_s} ${arg_QUIET_S})
+  endif()
 endfunction()
