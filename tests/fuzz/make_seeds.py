@@ -9,6 +9,7 @@ A seed has the form that the target of its folder reads (see its .cc file).
 """
 import pathlib
 import re
+import struct
 import sys
 
 import make_motion_seeds
@@ -62,6 +63,12 @@ def memory(offset: int, data: bytes) -> bytes:
     return bytes([0x21, 0, 0, (len(data) - 1) << 4, offset >> 8, offset & 0xFF]) + data.ljust(16, b"\0")
 
 
+def phone(number: int, *ages_us: int) -> bytes:
+    """A report of a phone that lies face up."""
+    return struct.pack("<BBBBHQB", 1, 2, 0, 80, number, 16_667 * number, len(ages_us)) + b"".join(
+        struct.pack("<I6f", age, 0.1, -0.2, 9.8, 0.01, 0.02, -0.03) for age in ages_us)
+
+
 def seeds() -> dict[str, bytes]:
     board_block = raw("00 69 00 00") + b"".join(p.to_bytes(2, "big") for p in BOARD_POINTS) + bytes(4)
     data35 = raw("35 40 60 82 82 9C") + raw(MOTION_PLUS_PACKET) + bytes(10)
@@ -111,6 +118,8 @@ def seeds() -> dict[str, bytes]:
         "joycon/off": b"\x02" + string(b"") * 4 + steps([raw("ff")] * 8 + [bytes([0x30]) + bytes(48)] * 8),
         "joycon/attitude": b"\x00" + string(b"") * 4 + steps([raw("ff")] * 8 + [
             bytes([0x30, i]) + bytes(range(i, i + 47)) for i in range(0, 200, 9)]),
+        "inertial/phone": steps([phone(i, 33_000, 16_667, 0) for i in range(5, 60, 3)]),
+        "inertial/shaped": steps([b"\xff" + bytes(range(i, i + 80)) for i in range(0, 170, 11)]),
         "handshake/wiimote": b"\x00" + steps(wiimote),
         "handshake/board": b"\x01" + steps(board),
     }

@@ -26,6 +26,7 @@ struct Bench {
     options.listen = {*transport::ParseAddress("tcp:127.0.0.1:0")};
     options.servers = {*transport::ParseAddress("unix:/nonexistent/footing.sock")};
     options.devices = options.servers.front();
+    options.foxglove = true;
     options.token = "0123456789abcdef";
     auto opened = web::WebServer::Open(io, options);
     Expect(opened.ok());

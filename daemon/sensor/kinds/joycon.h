@@ -130,7 +130,7 @@ class Joycon : public kinds::Kind {
 
   stream::DeviceKind kind() const override;
   decode::Placement placement() const override;
-  decode::Timing timing() const override { return {0.015, 0.015, 0.08}; }
+  decode::Timing timing() const override { return {0.015, 0.005, 0.08}; }
   stream::DeviceRole own_role() const override;
   bool live() const override { return handshake_.settled(); }
 
