@@ -15,11 +15,11 @@
 #include <google/protobuf/message.h>
 #include <nlohmann/json.hpp>
 
-#include "clients/log/foxglove.h"
 #include "clients/log/lsl_in.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/body/angle_deviation.h"
+#include "common/foxglove/scene.h"
 #include "common/recording/bids_tables.h"
 #include "common/recording/recorded_motion.h"
 #include "common/recording/recorded_session.h"
@@ -467,7 +467,7 @@ Result<void> Tables::Learn() {
   };
   visitor.message = [this](const mcap::Message& record) {
     TopicTable& topic = topics_[record.channel_id];
-    if (topic.topic.starts_with(kFoxgloveTopics)) return;
+    if (topic.topic.starts_with(foxglove_scene::kTopics)) return;
     if (record.log_time_ns < topic.newest_ns) {
       topic.steps_back[topic.messages] = record.log_time_ns;
     }
@@ -491,7 +491,7 @@ Result<void> Tables::Walk(const Visit& visit) {
   visitor.message = [&](const mcap::Message& record) {
     if (!first_failure_) return;
     TopicTable& topic = topics_[record.channel_id];
-    if (topic.topic.starts_with(kFoxgloveTopics)) return;
+    if (topic.topic.starts_with(foxglove_scene::kTopics)) return;
     const auto& later = topic.steps_back;
     std::vector<Held>& held = held_[record.channel_id];
     const bool waits =

@@ -17,6 +17,7 @@
 #include "clients/log/contents.h"
 #include "clients/log/lsl.h"
 #include "common/base/text.h"
+#include "common/recording/event_text.h"
 #include "common/recording/recording_writer.h"
 #include "common/stream/device.h"
 #include "common/stream/hand_frames.h"
@@ -213,7 +214,9 @@ class XdfExporter {
            const pb::Message* row, const CsvTable& table) {
     const std::int64_t time_ns = TimeOf(record, row);
     if (to.stream.is_text) {
-      to.texts.emplace_back(time_ns, EventText(*row));
+      v1::Event event;
+      event.ParseFromString(row->SerializeAsString());
+      to.texts.emplace_back(time_ns, recording::EventText(event));
       return;
     }
     const double time_s = Extend(to, time_ns);
@@ -307,19 +310,6 @@ class XdfExporter {
 };
 
 }  // namespace
-
-std::string EventText(const pb::Message& event) {
-  const auto* kind = FieldOf(event, "kind", pb::FieldDescriptor::CPPTYPE_ENUM);
-  const std::string words = TextOf(event, "text");
-  const std::string name =
-      kind == nullptr ? "" : event.GetReflection()->GetEnum(event, kind)->name();
-  v1::Event marker;
-  if (name == "KIND_MARKER" && marker.ParseFromString(event.SerializeAsString())) {
-    const bool has_value = marker.marker().has_value();
-    return words + (has_value ? " " + text::Shortest(marker.marker().value()) : "");
-  }
-  return words.empty() ? name : name + ": " + words;
-}
 
 Result<ExportedXdf> ExportXdf(const std::string& recording, const std::string& folder,
                               bool replace) {

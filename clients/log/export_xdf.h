@@ -7,15 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include <google/protobuf/message.h>
-
 #include "common/base/result.h"
 
 namespace footing::log_client {
-
-/// An event as one text, such as "KIND_TRIAL: text"; a client's marker as its text alone, with its
-/// value behind it.
-std::string EventText(const google::protobuf::Message& event);
 
 /// One stream of an exported file.
 struct ExportedStream {

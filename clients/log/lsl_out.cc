@@ -8,12 +8,12 @@
 #include <boost/asio/io_context.hpp>
 
 #include "clients/log/commands.h"
-#include "clients/log/export_xdf.h"
 #include "clients/log/record.h"
 #include "common/base/text.h"
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
 #include "common/net/tick.h"
+#include "common/recording/event_text.h"
 #include "common/recording/stream_recorder.h"
 #include "common/runtime/service_manager.h"
 #include "common/stream/device.h"
@@ -271,7 +271,7 @@ void LslStreams::TakePose(const v1::Character& character, const v1::Skeleton& sk
 void LslStreams::TakeEvents(const v1::Events& events, double time_s) {
   for (const v1::Event& event : events.events()) {
     PushText("events", 0, event.host_ns() != 0 ? SecondsOf(event.host_ns()) : time_s,
-             EventText(event));
+             recording::EventText(event));
   }
 }
 

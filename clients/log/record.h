@@ -8,9 +8,9 @@
 
 #include <boost/asio/io_context.hpp>
 
-#include "clients/log/foxglove.h"
 #include "clients/log/lsl_in.h"
 #include "common/base/result.h"
+#include "common/foxglove/scene.h"
 #include "common/net/address.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/stream_recorder.h"
@@ -27,7 +27,7 @@ struct RecordOptions {
   bool from_ring = false;  ///< First what the servers' rings still hold, up to 30 s.
   bool replace = false;
   bool compress = true;                  ///< Chunks, by zstd.
-  bool foxglove = false;                 ///< The topics of FoxgloveScene, too.
+  bool foxglove = false;                 ///< The topics of foxglove_scene::Scene, too.
   std::vector<std::string> lsl;          ///< Queries for streams of LSL that are recorded, too.
   std::vector<std::string> attachments;  ///< Files: config, calibrations, track, survey.
   std::string version;
@@ -91,7 +91,7 @@ class Recording {
   std::function<void()> on_end_;  ///< Empty: it has ended.
   recording::RecordingWriter writer_;
   recording::ServerNames names_;
-  FoxgloveScene foxglove_;
+  foxglove_scene::Scene foxglove_;
   std::vector<std::unique_ptr<recording::ServerRecorder>> links_;
   std::unique_ptr<lsl::StreamsRecorder> lsl_;  ///< Null: none is asked for.
   Result<void> written_;

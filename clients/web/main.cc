@@ -22,10 +22,10 @@ namespace footing::web {
 namespace {
 
 struct ServeFlags {
-  std::vector<std::string> listen, connect, host_names;
+  std::vector<std::string> listen, connect, host_names, origins;
   std::string devices, token_file, identity_file;
   double seconds = 0;
-  bool invite = false, phones = false, json = false;
+  bool foxglove = false, invite = false, phones = false, json = false;
 
   Result<WebOptions> Options() const {
     WebOptions options;
@@ -56,6 +56,8 @@ struct ServeFlags {
       options.token = *token;
     }
     options.host_names = host_names;
+    options.foxglove = foxglove;
+    options.origins = origins;
     options.identity_file = identity_file;
     return options;
   }
@@ -151,6 +153,11 @@ std::function<int()> AddServe(CLI::App& app) {
   app.add_option("--host-name", flags->host_names,
                  "Name by which browsers may call this host, besides its numeric addresses; may be "
                  "repeated");
+  app.add_flag("--foxglove", flags->foxglove,
+               "Serve the scene to Foxglove and Lichtblick, too: ws://127.0.0.1:PORT");
+  app.add_option("--origin", flags->origins,
+                 "Origin of a page of others that may read by --foxglove, such as "
+                 "https://app.foxglove.dev; may be repeated");
   app.add_flag("--invite", flags->invite, "Show a QR code of the live page for each browser");
   app.add_flag("--phones", flags->phones, "Show a QR code for each phone that is a controller");
   app.add_option("--seconds", flags->seconds, "Duration, s (0: until SIGINT or SIGTERM)")
@@ -170,6 +177,7 @@ int main(int argc, char** argv) {
       "  footing-web                                   # http://127.0.0.1:7480/ on this host\n"
       "  footing-web --listen tls:192.168.1.5:7480 --invite    # a QR code for other devices\n"
       "  footing-web --listen tls:192.168.1.5:7480 --phones    # a QR code for each phone\n"
+      "  footing-web --foxglove                        # in Foxglove open ws://127.0.0.1:7480\n"
       "  footing-web --connect unix:/run/footing/simulation.sock --json");
   const auto serve = footing::web::AddServe(*app);
   app->parse_complete_callback([] { footing::log::Start("footing-web", false); });

@@ -14,6 +14,7 @@
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
 
+#include "clients/web/foxglove_feed.h"
 #include "common/base/text.h"
 #include "common/cli/cli.h"
 #include "common/net/access.h"
@@ -23,6 +24,7 @@
 #include "common/net/known_servers.h"
 #include "common/net/tls_context.h"
 #include "common/runtime/clock.h"
+#include "common/runtime/log.h"
 #include "common/runtime/timer.h"
 #include "common/stream/product_ids.h"
 #include "footing/v1/session.pb.h"
@@ -75,6 +77,8 @@ struct WebServer::Desk {
   WebOptions options;
   WebCounts counts;
   Passes passes{Secret};
+  const std::string session = Secret();  ///< Name of this start of the program, for Foxglove.
+  std::string refused_foxglove;          ///< Why the last one was, which is logged once.
   std::map<std::string, std::shared_ptr<Mailbox>> mailboxes;  ///< By the phone's pass.
   std::optional<tls::Identity> identity;
   std::vector<std::unique_ptr<http_server::Server>> servers;
@@ -369,6 +373,109 @@ class Bridge : public std::enable_shared_from_this<Bridge> {
   bool over_ = false;
 };
 
+/// A program that draws with Foxglove's protocol, and a session with each server for it.
+class FoxgloveSocket : public std::enable_shared_from_this<FoxgloveSocket> {
+ public:
+  FoxgloveSocket(Stream stream, std::shared_ptr<Desk> desk, http_server::Place place)
+      : page_(std::move(stream)),
+        desk_(std::move(desk)),
+        place_(std::move(place)),
+        feed_(desk_->session) {}
+
+  void Start(const Request& request, std::string_view protocol) {
+    error_code ignored;
+    page_.next_layer().socket().plain().set_option(
+        asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+    page_.set_option(websocket::stream_base::timeout{std::chrono::seconds(5), kIdle, true});
+    page_.read_message_max(64u << 10);
+    page_.set_option(
+        websocket::stream_base::decorator([protocol](websocket::response_type& response) {
+          response.set(http::field::sec_websocket_protocol, protocol);
+        }));
+    page_.async_accept(request, [self = shared_from_this()](const error_code& error) {
+      if (error || self->desk_->closed) return;
+      ++self->desk_->counts.connections;
+      for (const auto& address : self->desk_->options.servers) self->Follow(address);
+      self->Read();
+      self->Write();
+    });
+  }
+
+ private:
+  struct Followed {
+    std::string name;  ///< As the server calls itself.
+    std::unique_ptr<transport::Client> client;
+  };
+
+  void Follow(const transport::Address& address) {
+    Followed& followed = *followed_.emplace_back(std::make_unique<Followed>());
+    transport::ClientOptions options;
+    options.address = address;
+    options.client_name = "web: Foxglove";
+    options.max_hz = foxglove_scene::Scene::kMostHz;
+    options.policy = v1::QUEUE_POLICY_LATEST;
+    transport::ClientHandlers handlers;
+    handlers.on_welcome = [&followed](const v1::Welcome& welcome) {
+      followed.name = welcome.server_id();
+    };
+    handlers.on_tick = [this, &followed](const v1::Tick& tick) {
+      if (over_) return;
+      feed_.OnTick(followed.name, tick, {tick.host_ns(), tick.host_ns(), 0});
+      Write();
+    };
+    handlers.on_gap = [](const v1::Gap&) {};
+    handlers.on_state = [](transport::LinkState, const std::string&) {};
+    followed.client =
+        std::make_unique<transport::Client>(desk_->io, std::move(options), std::move(handlers));
+    followed.client->Start();
+  }
+
+  void Read() {
+    page_.async_read(from_page_, [self = shared_from_this()](const error_code& error, std::size_t) {
+      if (error || self->over_ || self->desk_->closed) return self->End();
+      if (self->page_.got_text()) {
+        const auto data = self->from_page_.cdata();
+        const auto taken = self->feed_.Take({static_cast<const char*>(data.data()), data.size()});
+        if (!taken) return self->End();
+      }
+      self->from_page_.consume(self->from_page_.size());
+      self->Write();
+      self->Read();
+    });
+  }
+
+  void Write() {
+    if (writes_ || over_) return;
+    auto message = feed_.Next();
+    if (!message) return;
+    to_page_ = std::move(message->bytes);
+    page_.text(message->is_text);
+    writes_ = true;
+    page_.async_write(asio::buffer(to_page_),
+                      [self = shared_from_this()](const error_code& error, std::size_t) {
+                        self->writes_ = false;
+                        if (error || self->desk_->closed) return self->End();
+                        self->Write();
+                      });
+  }
+
+  void End() {
+    over_ = true;
+    for (const auto& followed : followed_) followed->client->Stop();
+    page_.next_layer().socket().Close();
+  }
+
+  websocket::stream<Stream> page_;
+  std::shared_ptr<Desk> desk_;
+  const http_server::Place place_;
+  FoxgloveFeed feed_;
+  std::vector<std::unique_ptr<Followed>> followed_;
+  boost::beast::flat_buffer from_page_;
+  std::string to_page_;
+  bool writes_ = false;
+  bool over_ = false;
+};
+
 /// One listener's view of the desk.
 class Reception {
  public:
@@ -392,8 +499,14 @@ class Reception {
   }
 
   bool Upgrade(const Request& request, Stream& stream, const http_server::Place& place) {
-    if (!websocket::is_upgrade(request) || !IsOwnOrigin(request)) return false;
+    if (!websocket::is_upgrade(request)) return false;
     if (!IsOwnHost(request[http::field::host], desk_->options.host_names)) return false;
+    if (const std::string_view protocol = ProtocolOf(request); !protocol.empty()) {
+      if (!WhyNoFoxglove(request).empty()) return false;
+      std::make_shared<FoxgloveSocket>(std::move(stream), desk_, place)->Start(request, protocol);
+      return true;
+    }
+    if (!IsOwnOrigin(request)) return false;
     const auto socket = SocketOf(request);
     if (!socket || RightOf(request) < socket->needs) return false;
     std::make_shared<Bridge>(std::move(stream), desk_, place, socket->address, socket->carries)
@@ -442,7 +555,40 @@ class Reception {
     return {status, kText, why};
   }
 
+  static std::string_view ProtocolOf(const Request& request) {
+    const auto offered = request[http::field::sec_websocket_protocol];
+    return FoxgloveProtocol({offered.data(), offered.size()});
+  }
+
+  /// Why this program may not draw with Foxglove's protocol; empty: it may. One that is not a
+  /// browser names no origin.
+  std::string WhyNoFoxglove(const Request& request) const {
+    if (!desk_->options.foxglove) {
+      return "Foxglove's protocol is off; start footing-web with --foxglove\n";
+    }
+    if (secure_) {
+      return "Foxglove's protocol is for programs of this host; from another one go through ssh "
+             "-L\n";
+    }
+    const std::string origin(request[http::field::origin]);
+    const auto& known = desk_->options.origins;
+    if (origin.empty() || IsOwnOrigin(request) ||
+        std::find(known.begin(), known.end(), origin) != known.end()) {
+      return "";
+    }
+    return "pages of " + origin.substr(0, 200) +
+           " are refused; if you trust it, start footing-web with " + "--origin " +
+           origin.substr(0, 200) + "\n";
+  }
+
   Answer RefuseSocket(const Request& request) {
+    if (!ProtocolOf(request).empty()) {
+      const std::string why = WhyNoFoxglove(request);
+      if (std::exchange(desk_->refused_foxglove, why) != why) {
+        log::Warning(why.substr(0, why.find('\n')));
+      }
+      return Refuse(http::status::forbidden, why);
+    }
     if (!IsOwnOrigin(request)) {
       return Refuse(http::status::forbidden, "pages of other origins are refused\n");
     }

@@ -23,6 +23,8 @@ struct WebOptions {
   std::string token;                    ///< Gives a page the role control; empty: no page has it.
   std::vector<std::string> host_names;  ///< By which browsers may call this host.
   std::string identity_file;            ///< For tls:; empty: tls::DefaultIdentityFile().
+  bool foxglove = false;                ///< Foxglove's protocol for programs of this host.
+  std::vector<std::string> origins;     ///< Pages of others that may use it, as https://HOST.
 };
 
 struct WebCounts {
@@ -33,7 +35,8 @@ struct WebCounts {
 
 /// Serves the pages and carries messages between a browser's WebSockets and the servers: one
 /// binary message is one Envelope (docs/web.md). A page views; it has the role control only with
-/// the token. Beyond this host it needs a pass. Everything runs on the io_context's one thread.
+/// the token. Beyond this host it needs a pass. Foxglove's protocol is served to this host alone.
+/// Everything runs on the io_context's one thread.
 class WebServer {
  public:
   /// Failure when it cannot listen; usage error for an address of another kind.

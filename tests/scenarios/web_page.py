@@ -3,6 +3,7 @@ does not read, many pages at once. In headless Chromium, where there is one: the
 whose motion makes the character walk.
 
 Usage: web_page.py BINARY_FOLDER (http|crowd|live|phones) [PICTURE_FOLDER]
+       web_page.py BINARY_FOLDER foxglove NODE_FOLDER
 """
 import concurrent.futures
 import gzip
@@ -21,6 +22,7 @@ import time
 import browser
 import decode_stream
 import harness
+import outside_readers
 from decode_stream import bytes_field, number_field
 from ports import free_port
 
@@ -36,7 +38,7 @@ def skip(why):
 class WebSocket:
     """A page's side of a WebSocket (RFC 6455), without a library."""
 
-    def __init__(self, port, path, origin=None, cookie=None, host=None, trusting=None):
+    def __init__(self, port, path, origin=None, cookie=None, host=None, trusting=None, protocol=None):
         self.stream = socket.create_connection(("127.0.0.1", port), timeout=20)
         host, scheme = host or f"127.0.0.1:{port}", "http://"
         if trusting:
@@ -44,6 +46,7 @@ class WebSocket:
         lines = [f"GET {path} HTTP/1.1", f"Host: {host}", f"Origin: {origin or scheme + host}", "Upgrade: websocket",
                  "Connection: Upgrade", "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version: 13"]
         lines += [f"Cookie: {cookie}"] if cookie else []
+        lines += [f"Sec-WebSocket-Protocol: {protocol}"] if protocol else []
         self.stream.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
         self.bytes = b""
         while b"\r\n\r\n" not in self.bytes:
@@ -52,6 +55,7 @@ class WebSocket:
             self.bytes += got
         head, self.bytes = self.bytes.split(b"\r\n\r\n", 1)
         self.status = int(head.split()[1])
+        self.head = head.decode()
 
     def close(self):
         self.stream.close()
@@ -88,7 +92,7 @@ class WebSocket:
                 return ("closed", payload[2:].decode())
             if opcode == 9:
                 self.send(payload, 10)
-            elif opcode in (0, 2):
+            elif opcode in (0, 1, 2):
                 parts += payload
                 if head[0] & 0x80:
                     return parts
@@ -281,6 +285,52 @@ def check_restart(stage, port):
     assert "tick" in page.until("tick")
 
 
+def check_foxglove(stage):
+    """Programs of this host that know Foxglove's protocol get the scene; pages of others only by name."""
+    names = "other, foxglove.websocket.v1"
+    stage.start_servers()
+    port, _ = serve(stage)
+    assert WebSocket(port, "/", protocol=names).status == 403, "off by default"
+    port, _ = serve(stage, "--foxglove", "--origin", "https://app.foxglove.dev", name="foxglove")
+    assert WebSocket(port, "/", "https://elsewhere.example", protocol=names).status == 403
+    assert "--origin https://elsewhere.example" in (stage.folder / "foxglove.log").read_text()
+    assert WebSocket(port, "/", "https://app.foxglove.dev").status == 403, "that origin has no other right"
+    page = WebSocket(port, "/", "https://app.foxglove.dev", protocol=names)
+    assert page.status == 101 and "Sec-WebSocket-Protocol: foxglove.websocket.v1" in page.head, page.head
+    assert json.loads(page.receive())["op"] == "serverInfo"
+    topics = {}
+    while "/foxglove/footing-sim/body" not in topics:
+        said = json.loads(page.receive())
+        topics |= {channel["topic"]: channel["id"] for channel in said["channels"]}
+    wish = [{"id": 7, "channelId": topics["/foxglove/footing-sim/transforms"]}]
+    page.send(json.dumps({"op": "subscribe", "subscriptions": wish}).encode(), 1)
+    times = []
+    while len(times) < 30:
+        data = page.receive()
+        if data[:1] == b"{":
+            continue
+        kind, subscription, time_ns = struct.unpack_from("<BIQ", data)
+        assert (kind, subscription) == (1, 7), data[:5]
+        times.append(time_ns)
+    assert all(b > a for a, b in zip(times, times[1:])), "times rise"
+    page.send(b"no JSON", 1)
+    while not isinstance(page.receive(), tuple):
+        pass
+    check_foxglove_client(port)
+
+
+def check_foxglove_client(port):
+    """Foxglove's own client, where npm can be had."""
+    try:
+        folder = outside_readers.node_folder(sys.argv[3])
+    except outside_readers.NoNode as why:
+        print(f"note: without Foxglove's own client: {why}")
+        return
+    topics = [f"/foxglove/footing-sim/{name}" for name in ("transforms", "body", "track", "forces", "joints")]
+    followed = outside_readers.run_node(folder, "follow_foxglove.mjs", f"ws://127.0.0.1:{port}", *topics)
+    assert followed[topics[0]]["schema"] == "foxglove.FrameTransforms", followed
+
+
 def cpu_s(process):
     fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
@@ -454,7 +504,7 @@ def main():
     part, pictures = sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else None
     if part in ("live", "phones") and not browser.is_there():
         skip("chromium is missing; scripts/dependencies-web.txt lists what this test needs")
-    checks = {"http": (check_files, check_tls, check_roles), "crowd": (check_crowd,), "live": (lambda stage: check_live(stage, pictures),),
+    checks = {"http": (check_files, check_tls, check_roles), "foxglove": (check_foxglove,), "crowd": (check_crowd,), "live": (lambda stage: check_live(stage, pictures),),
               "phones": (lambda stage: check_phones(stage, pictures),)}
     for check in checks[part]:
         with harness.Stage(sys.argv[1]) as stage:
