@@ -3,6 +3,7 @@
 #include "clients/stream/boards.h"
 #include "clients/stream/body_stage.h"
 #include "clients/stream/dialer.h"
+#include "clients/stream/network_sensors.h"
 #include "clients/stream/plan.h"
 #include "clients/stream/samples.h"
 #include "common/cli/cli.h"
@@ -123,6 +124,34 @@ int RunUser(const stream_client::UserOptions& user, const stream_client::Common&
   });
 }
 
+int RunSensors(const stream_client::SensorsOptions& options, const stream_client::Common& common) {
+  const auto to = transport::AddressOrDefault(common.to, "devices");
+  if (!to) return cli::Report(to.error());
+  const auto done = stream_client::RunSensors(options, *to, common.seconds);
+  return done ? 0 : cli::Report(done.error());
+}
+
+/// Files that the devices of `accel` and `corners` play.
+struct Recorded {
+  std::string left, right;
+  double rate_hz = 100;
+};
+
+std::pair<CLI::App*, CLI::App*> AddRecorded(CLI::App& app, Recorded& files) {
+  auto* accel = app.add_subcommand(
+      "accel", "Wiimotes that play recorded accelerations, CSV ax,ay,az in m/s2");
+  auto* corners = app.add_subcommand(
+      "corners", "Boards that play recorded corner loads, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
+  for (auto* recorded : {accel, corners}) {
+    recorded->add_option("--left", files.left, "Recording of the left device, CSV");
+    recorded->add_option("--right", files.right, "Recording of the right device, CSV");
+  }
+  accel->add_option("--rate-hz", files.rate_hz, "Sample rate of the CSV files, Hz")
+      ->required()
+      ->default_str("");
+  return {accel, corners};
+}
+
 constexpr char kExamples[] =
     "  footing-stream user --script demo --interface wrist\n"
     "  footing-stream user --devices joycon --interface joystick\n"
@@ -140,6 +169,7 @@ constexpr char kExamples[] =
     "  footing-stream runner &     # the terrain game's two players, see footing-game\n"
     "  footing-stream builder\n"
     "  footing-stream rehearse     # performs what footing-ctl setup asks for in another terminal\n"
+    "  footing-stream sensors --listen 192.168.1.5:6969 --role left_hand --role right_hand\n"
     "  footing-stream replay walk.mcap\n"
     "  FOOTING_TOKEN_FILE=token footing-stream user --to tls:192.168.1.5:7432    # another host\n";
 
@@ -148,7 +178,9 @@ constexpr char kExamples[] =
 int main(int argc, char** argv) {
   auto app =
       cli::NewApp("footing-stream",
-                  "Simulates devices at the level of raw HID reports, over a socket.", kExamples);
+                  "Simulates devices at the level of raw HID reports, over a socket, and brings in "
+                  "real sensors of the network.",
+                  kExamples);
   stream_client::Common common;
   bool quiet = false, replace = false;
   AddCommon(*app, common);
@@ -156,21 +188,10 @@ int main(int argc, char** argv) {
   app->require_subcommand(1);
   app->fallthrough();
 
-  std::string left, right;
-  double rate_hz = 100;
   stream_client::UserOptions person;
   auto* user = stream_client::AddUserCommand(*app, person);
-  auto* accel = app->add_subcommand(
-      "accel", "Wiimotes that play recorded accelerations, CSV ax,ay,az in m/s2");
-  auto* corners = app->add_subcommand(
-      "corners", "Boards that play recorded corner loads, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
-  for (auto* recorded : {accel, corners}) {
-    recorded->add_option("--left", left, "Recording of the left device, CSV");
-    recorded->add_option("--right", right, "Recording of the right device, CSV");
-  }
-  accel->add_option("--rate-hz", rate_hz, "Sample rate of the CSV files, Hz")
-      ->required()
-      ->default_str("");
+  Recorded files;
+  const auto [accel, corners] = AddRecorded(*app, files);
   stream_client::BoardsOptions under;
   auto* boards = stream_client::AddBoardsCommand(*app, under);
   stream_client::InsolesOptions insoles_options;
@@ -185,6 +206,8 @@ int main(int argc, char** argv) {
   auto* builder = stream_client::AddBuilderCommand(*app, players);
   stream_client::RehearseOptions setup_options;
   auto* rehearse = stream_client::AddRehearseCommand(*app, setup_options);
+  stream_client::SensorsOptions sensors_options;
+  auto* sensors = stream_client::AddSensorsCommand(*app, sensors_options);
   std::string recording;
   auto* replay = app->add_subcommand("replay", "The devices of a recording, with its raw reports");
   replay->add_option("FILE", recording, "Recording, MCAP file")->required();
@@ -195,13 +218,16 @@ int main(int argc, char** argv) {
     const auto written = stream_client::WriteSampleFiles(sample_folder, replace);
     return written ? 0 : cli::Report(written.error());
   }
+  if (*sensors) return RunSensors(sensors_options, common);
   if (*replay) return Run(stream_client::PlanReplay(recording, common), common);
   if (*rehearse) return RunRehearse(setup_options, common);
   if (*runner) return RunPlayer(players.simulation, common);
   if (*builder) return Run(stream_client::PlanBuilder(players.pits, common), common);
   if (*user) return RunUser(person, common);
-  if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
+  if (*accel)
+    return Run(stream_client::PlanAccelerations(files.left, files.right, files.rate_hz, common),
+               common);
   if (*insoles) return Run(stream_client::PlanInsoles(insoles_options, common), common);
   if (*boards) return Run(stream_client::PlanBoards(under, common), common);
-  return Run(stream_client::PlanCorners(left, right, common), common);
+  return Run(stream_client::PlanCorners(files.left, files.right, common), common);
 }

@@ -69,6 +69,15 @@ def phone(number: int, *ages_us: int) -> bytes:
         struct.pack("<I6f", age, 0.1, -0.2, 9.8, 0.01, 0.02, -0.03) for age in ages_us)
 
 
+def slime(kind: int, rest: bytes) -> bytes:
+    return struct.pack(">IQ", kind, 7) + rest
+
+
+def osc(address: str, *values: float) -> bytes:
+    text = address.encode() + b"\0"
+    return text + bytes(-len(text) % 4) + b",fff\0\0\0\0" + struct.pack(">fff", *values)
+
+
 def seeds() -> dict[str, bytes]:
     board_block = raw("00 69 00 00") + b"".join(p.to_bytes(2, "big") for p in BOARD_POINTS) + bytes(4)
     data35 = raw("35 40 60 82 82 9C") + raw(MOTION_PLUS_PACKET) + bytes(10)
@@ -120,6 +129,18 @@ def seeds() -> dict[str, bytes]:
             bytes([0x30, i]) + bytes(range(i, i + 47)) for i in range(0, 200, 9)]),
         "inertial/phone": steps([phone(i, 33_000, 16_667, 0) for i in range(5, 60, 3)]),
         "inertial/shaped": steps([b"\xff" + bytes(range(i, i + 80)) for i in range(0, 170, 11)]),
+        "sensors/slimevr": steps([
+            slime(3, bytes(40)), slime(15, b"\x01\x01\x02"), slime(12, struct.pack(">ff", 3.9, 0.4)),
+            slime(4, struct.pack(">fff", 1, 2, 3) + b"\x01")] + [
+            slime(17, struct.pack(">BBffffB", i % 2, 1, 0, 0.1 * i, 0, 1, 0)) for i in range(5)] + [
+            slime(16, struct.pack(">ffff", 1, 0, 0, 0)), slime(1, struct.pack(">ffff", 0, 1, 0, 0)),
+            slime(23, struct.pack(">Bhhhhhhh", 0, 0, 0, 0, 32767, 128, -256, 0)),
+            slime(100, struct.pack(">HIBBffffB", 23, 17, 0, 1, 0, 0, 0, 1, 0)),
+            slime(101, struct.pack(">BBBhhhhhhh", 16, 23, 1, 0, 0, 0, 32767, 1, 2, 3))]),
+        "sensors/osc": steps([
+            osc("/gyroscope", 0.1, 0.2, 0.3), osc("/accelerometer", 0.001, -0.001, 9.79), osc("/p/gyro", 0, 1, 0),
+            osc("/p/gravity", 0, 0, -1), osc("/p/accel", 0, 0.5, 0), b"#bundle\0" + bytes(7) + b"\1"]),
+        "sensors/own": steps([phone(i, 20_000, 0) for i in range(2, 9)]),
         "handshake/wiimote": b"\x00" + steps(wiimote),
         "handshake/board": b"\x01" + steps(board),
     }

@@ -46,7 +46,7 @@ NOT_HERE = {
     r"mocap|\.asf|\.trc|squats\.c3d|me\.mcap|me\.bvh": "reads motion capture of one's own; tests/offline runs it on recordings",
     r"tcp:|tls:": "needs an address of this host, or a server on another one",
     r"/etc/footing/": "reads the administrator's settings",
-    r"0\.0\.0\.0": "would listen to other hosts",
+    r"0\.0\.0\.0|sensors --listen 192": "would listen to other hosts",
     r"wave\.csv": "reads a Kinect's recording; tests/clients/skeleton does",
     r"^footing-ctl discover": "needs the system bus and Avahi; scenario discovery has both",
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
