@@ -568,6 +568,9 @@ Stance StanceOf(const Model& model) {
       case stream::DeviceRole::kRightUpperArm:
       case stream::DeviceRole::kLeftForearm:
       case stream::DeviceRole::kRightForearm:
+      case stream::DeviceRole::kPelvis:
+      case stream::DeviceRole::kLeftThigh:
+      case stream::DeviceRole::kRightThigh:
       case stream::DeviceRole::kEditor:
         left_n += left_cells_n;
         right_n += right_cells_n;

@@ -12,80 +12,6 @@
 namespace footing::scene {
 namespace {
 
-constexpr double kHeadS = 0.2;
-constexpr double kToesS = 0.05;
-constexpr double kWingsOpenS = 0.18;
-constexpr double kWingsCloseS = 0.25;
-constexpr double kMaxLiftM = 0.10;
-
-/// The share of the way to its goal that a first-order filter goes in dt_s.
-double Share(double dt_s, double time_constant_s) { return 1 - std::exp(-dt_s / time_constant_s); }
-
-int IndexOf(const std::vector<stream::Link>& links, const char* name, int otherwise) {
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (links[i].name == name) return static_cast<int>(i);
-  }
-  return otherwise;
-}
-
-int IndexOf(const std::vector<std::string>& points, const char* name, int otherwise) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i] == name) return static_cast<int>(i);
-  }
-  return otherwise;
-}
-
-bool Touches(const CharacterPose& pose, int contact) {
-  return contact < static_cast<int>(pose.contacts.size()) &&
-         pose.contacts[static_cast<std::size_t>(contact)].touching;
-}
-
-}  // namespace
-
-BirdSkeleton FindParts(const stream::Skeleton& skeleton) {
-  BirdSkeleton found;
-  found.body = IndexOf(skeleton.links, "body", found.body);
-  found.hips = {IndexOf(skeleton.links, "left_hip", found.hips[0]),
-                IndexOf(skeleton.links, "right_hip", found.hips[1])};
-  found.feet = {IndexOf(skeleton.contact_points, "left_foot", found.feet[0]),
-                IndexOf(skeleton.contact_points, "right_foot", found.feet[1])};
-  return found;
-}
-
-BirdMotion Advance(const BirdMotion& motion, const BirdSkeleton& skeleton,
-                   const CharacterPose& pose, double dt_s) {
-  if (skeleton.body >= static_cast<int>(pose.links.size())) return motion;
-  const stream::LinkPose& body = pose.links[static_cast<std::size_t>(skeleton.body)];
-  const Eigen::Vector3d forward = body.orientation * Eigen::Vector3d::UnitX();
-  const double yaw_rad = std::atan2(forward.y(), forward.x());
-  const double pitch_rad = std::asin(std::clamp(forward.z(), -1.0, 1.0));
-  const double height_m = body.position_m.z();
-
-  BirdMotion next = motion;
-  if (!motion.placed) {
-    next.placed = true;
-    next.head_yaw_rad = yaw_rad;
-    next.head_pitch_rad = pitch_rad;
-    next.body_height_m = height_m;
-  }
-  const double head = Share(dt_s, kHeadS);
-  next.head_yaw_rad = WrapAngle(next.head_yaw_rad + head * WrapAngle(yaw_rad - next.head_yaw_rad));
-  next.head_pitch_rad += head * (pitch_rad - next.head_pitch_rad);
-  next.body_height_m += head * (height_m - next.body_height_m);
-  next.head_lift_m = std::clamp(next.body_height_m - height_m, -kMaxLiftM, kMaxLiftM);
-  bool airborne = true;
-  for (std::size_t leg = 0; leg < 2; ++leg) {
-    const bool touching = Touches(pose, skeleton.feet[leg]);
-    airborne = airborne && !touching;
-    next.toe_spread[leg] += Share(dt_s, kToesS) * ((touching ? 1 : 0) - next.toe_spread[leg]);
-  }
-  next.wing_spread +=
-      Share(dt_s, airborne ? kWingsOpenS : kWingsCloseS) * ((airborne ? 1 : 0) - next.wing_spread);
-  return next;
-}
-
-namespace {
-
 using Eigen::Matrix3f;
 using Eigen::Matrix4f;
 using Eigen::Vector3f;
@@ -102,16 +28,20 @@ Matrix3f TurnAbout(const Vector3f& axis, float angle_rad) {
   return Eigen::AngleAxisf(angle_rad, axis.normalized()).toRotationMatrix();
 }
 
-void AddTrunk(const Matrix4f& X_WB, const Plumage& plumage, PartList& parts) {
+void AddTrunk(const Matrix4f& X_WB, const BirdMotion& motion, const Plumage& plumage,
+              PartList& parts) {
   const Matrix3f pitch_up = TurnAbout(Vector3f::UnitY(), -0.10f);
   parts.AddBall(X_WB * Ellipsoid(kTrunkCentre, pitch_up, kTrunkHalfAxes), plumage.back,
                 plumage.belly, 0.15f);
   parts.AddBall(X_WB * Ellipsoid(kRumpCentre, pitch_up, kRumpHalfAxes), plumage.back, plumage.belly,
                 0.15f);
+  // Behind the root of the tail up is a turn the other way than ahead of it.
+  const Matrix3f tail =
+      TurnAbout(Vector3f::UnitZ(), static_cast<float>(-motion.tail_yaw.value)) *
+      TurnAbout(Vector3f::UnitY(), 0.5f + static_cast<float>(motion.tail_pitch.value));
   for (int feather = -2; feather <= 2; ++feather) {
     const auto side = static_cast<float>(feather);
-    const Matrix3f turn =
-        TurnAbout(Vector3f::UnitZ(), -0.24f * side) * TurnAbout(Vector3f::UnitY(), 0.5f);
+    const Matrix3f turn = TurnAbout(Vector3f::UnitZ(), -0.24f * side) * tail;
     const Vector3f centre =
         kRumpCentre + Vector3f(-0.19f, 0, 0.05f) + turn * Vector3f(-0.16f, 0, 0);
     parts.AddBall(X_WB * Ellipsoid(centre, turn, {0.19f, 0.055f, 0.022f}), plumage.tail,
@@ -210,7 +140,7 @@ void AddBird(const BirdSkeleton& skeleton, const CharacterPose& pose, const Bird
   X_WB.topRightCorner<3, 1>() = body.position_m.cast<float>();
 
   const Plumage plumage = PlumageOf(pose.character);
-  AddTrunk(X_WB, plumage, parts);
+  AddTrunk(X_WB, motion, plumage, parts);
   AddWings(X_WB, motion.wing_spread, plumage, parts);
   AddHead(X_WB, motion, plumage, parts);
   for (std::size_t leg = 0; leg < 2; ++leg) {
@@ -255,15 +185,26 @@ void AddNeck(const Vector3f& base, const Vector3f& base_forward, const Vector3f&
   }
 }
 
-void AddEye(const Matrix4f& X_WH, float side, PartList& parts) {
+/// The pupil turns about the eye's middle; a lid in the colour of the head closes over both.
+void AddEye(const Matrix4f& X_WH, float side, const BirdMotion& motion, const Colour& lid,
+            PartList& parts) {
   const Matrix3f axes = Matrix3f::Identity();
   const Colour white = Rgb(0xffffff), dark = Rgb(0x16130f);
   const auto ball = [&](const Vector3f& centre, float radius) {
     return Matrix4f(X_WH * Ellipsoid(centre, axes, Vector3f::Constant(radius)));
   };
-  parts.AddBall(ball({0.044f, side * 0.064f, 0.034f}, 0.038f), white, white, 0.6f);
-  parts.AddBall(ball({0.056f, side * 0.081f, 0.037f}, 0.024f), dark, dark, 0.9f);
-  parts.AddBall(ball({0.068f, side * 0.096f, 0.049f}, 0.0075f), white, white, 0);
+  const Vector3f middle(0.044f, side * 0.064f, 0.034f);
+  const Matrix3f gaze = TurnAbout(Vector3f::UnitZ(), static_cast<float>(motion.gaze_yaw_rad)) *
+                        TurnAbout(Vector3f::UnitY(), static_cast<float>(-motion.gaze_pitch_rad));
+  parts.AddBall(ball(middle, 0.038f), white, white, 0.6f);
+  parts.AddBall(ball(middle + gaze * Vector3f(0.012f, side * 0.017f, 0.003f), 0.024f), dark, dark,
+                0.9f);
+  parts.AddBall(ball(middle + gaze * Vector3f(0.024f, side * 0.032f, 0.015f), 0.0075f), white,
+                white, 0);
+  const auto closed = static_cast<float>(motion.lid);
+  if (closed <= 0) return;
+  const Vector3f over = middle + Vector3f(0.006f, side * 0.008f, 0.030f * (1 - closed));
+  parts.AddBall(ball(over, 0.042f), lid, lid, 0.2f);
 }
 
 void AddBeakAndCrest(const Vector3f& head, const Matrix3f& axes, const Plumage& plumage,
@@ -291,14 +232,15 @@ void AddHead(const Matrix4f& X_WB, const BirdMotion& motion, const Plumage& plum
   const Vector3f level_forward(axes(0, 0), axes(1, 0), 0);
   const Vector3f place = X_WB.topRightCorner<3, 1>();
   const Vector3f base = place + X_WB.topLeftCorner<3, 3>() * kNeckBase;
-  const Vector3f head = place + kHeadAheadM * level_forward.normalized() +
+  const float ahead_m = kHeadAheadM + static_cast<float>(motion.head_ahead.value);
+  const Vector3f head = place + ahead_m * level_forward.normalized() +
                         Vector3f(0, 0, kHeadAboveM + static_cast<float>(motion.head_lift_m));
   AddNeck(base, X_WB.block<3, 1>(0, 0), head, axes, plumage, parts);
 
   const Matrix4f X_WH = Ellipsoid(head, axes, Vector3f::Ones());
   parts.AddBall(Ellipsoid(head, axes, {kHeadRadiusM * 1.12f, kHeadRadiusM, kHeadRadiusM}),
                 plumage.back, plumage.belly, 0.2f);
-  for (const float side : {1.0f, -1.0f}) AddEye(X_WH, side, parts);
+  for (const float side : {1.0f, -1.0f}) AddEye(X_WH, side, motion, plumage.back, parts);
   AddBeakAndCrest(head, axes, plumage, parts);
 }
 

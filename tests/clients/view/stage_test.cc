@@ -44,13 +44,6 @@ TEST(Stage, APoseWithoutLinksIsDrawnAsNothing) {
   EXPECT_TRUE(stage.Advance({}, frame, 0, 0.01, {true}).figures.balls.empty());
 }
 
-CharacterPose Turned(double yaw_rad, bool touching) {
-  CharacterPose pose = made::TickAt(0, {}).frame->characters[0];
-  pose.links[0].orientation = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
-  for (auto& contact : pose.contacts) contact.touching = touching;
-  return pose;
-}
-
 TEST(Stage, ThePictureFollowsThePersonsHead) {
   const Model model = made::ModelAfter(1, {});
   WorldFrame frame = made::TickAt(1, {}).frame.value();
@@ -62,34 +55,6 @@ TEST(Stage, ThePictureFollowsThePersonsHead) {
   frame.characters.front().interface.view_roll_rad = 0;
   for (int i = 0; i < 100; ++i) picture = stage.Advance(model, frame, 0, 0.02, {});
   EXPECT_NEAR(picture.camera.roll_rad, 0, 1e-3);
-}
-
-TEST(BirdMotion, TheHeadFollowsATurnByAFilterOfAFifthOfASecond) {
-  const BirdSkeleton skeleton = FindParts(made::Biped());
-  BirdMotion motion = Advance({}, skeleton, Turned(0, true), 0);
-  motion = Advance(motion, skeleton, Turned(1, true), 0.2);
-  // One time constant after a step: 1 - 1/e.
-  EXPECT_NEAR(motion.head_yaw_rad, 1 - std::exp(-1.0), 1e-9);
-}
-
-TEST(BirdMotion, ToesSpreadOnContactAndFoldInFlight) {
-  const BirdSkeleton skeleton = FindParts(made::Biped());
-  BirdMotion motion;
-  for (int i = 0; i < 50; ++i) motion = Advance(motion, skeleton, Turned(0, true), 0.01);
-  EXPECT_GT(motion.toe_spread[0], 0.99);
-  EXPECT_LT(motion.wing_spread, 0.01);
-  for (int i = 0; i < 50; ++i) motion = Advance(motion, skeleton, Turned(0, false), 0.01);
-  EXPECT_LT(motion.toe_spread[0], 0.01);
-  EXPECT_GT(motion.wing_spread, 0.9);
-}
-
-TEST(FindParts, GoesByNameNotByPlace) {
-  stream::Skeleton skeleton = made::Biped();
-  std::swap(skeleton.links[1], skeleton.links[3]);
-  std::swap(skeleton.contact_points[0], skeleton.contact_points[1]);
-  const BirdSkeleton found = FindParts(skeleton);
-  EXPECT_EQ(found.hips[0], 3);
-  EXPECT_EQ(found.feet[0], 1);
 }
 
 }  // namespace
