@@ -327,7 +327,7 @@ Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>
       return UsageError("--worn " + name +
                         ": not a role of a remote; must be one of: left_hand right_hand left_leg "
                         "right_leg head trunk editor left_upper_arm right_upper_arm left_forearm "
-                        "right_forearm");
+                        "right_forearm pelvis left_thigh right_thigh");
     }
     if (std::find(roles.begin(), roles.end(), role) != roles.end()) {
       return UsageError("--worn names " + name + " twice");

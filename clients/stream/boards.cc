@@ -133,6 +133,25 @@ Result<void> CheckHands(const BoardsOptions& options) {
   return {};
 }
 
+Result<void> AddSegmentSensors(const std::shared_ptr<const Stage>& stage,
+                               const std::vector<std::string>& names, const Common& common,
+                               virtual_devices::LinkQuality link, Plan& plan) {
+  for (const std::string& name : names) {
+    const DeviceRole role = stream::RoleNamed(name);
+    const auto joint = JointOfRole(role);
+    if (!joint || stage->scene.body.landmarks[*joint] < 0) {
+      return UsageError("--worn " + name +
+                        ": must be pelvis, trunk, head, left_thigh, right_thigh, left_leg or "
+                        "right_leg");
+    }
+    const std::uint64_t device = plan.devices.size() + 1;
+    plan.devices.push_back(MakeRemote(common, link, device, role,
+                                      OnBody(stage, *joint, DeviceSeed(common, device) + 700),
+                                      {HeldKind::kWiimote, true, false}));
+  }
+  return {};
+}
+
 /// PS Moves in both fists; a camera sees their lights.
 void AddMoves(const std::shared_ptr<const Stage>& stage, const Common& common,
               virtual_devices::LinkQuality link, Plan& plan) {
@@ -184,6 +203,29 @@ SimulatedDevice::WiimoteMotion OnSegment(std::shared_ptr<const Stage> stage, int
                                                ErrorsOf(true, seed));
 }
 
+std::optional<body::Landmark> JointOfRole(DeviceRole role) {
+  using body::Landmark;
+  constexpr std::pair<DeviceRole, Landmark> kJoints[] = {
+      {DeviceRole::kPelvis, Landmark::kHips},         {DeviceRole::kTrunk, Landmark::kChest},
+      {DeviceRole::kHead, Landmark::kHead},           {DeviceRole::kLeftThigh, Landmark::kLeftHip},
+      {DeviceRole::kRightThigh, Landmark::kRightHip}, {DeviceRole::kLeftLeg, Landmark::kLeftKnee},
+      {DeviceRole::kRightLeg, Landmark::kRightKnee}};
+  for (const auto& [known, joint] : kJoints) {
+    if (known == role) return joint;
+  }
+  return std::nullopt;
+}
+
+SimulatedDevice::WiimoteMotion OnBody(std::shared_ptr<const Stage> stage, body::Landmark joint,
+                                      std::uint64_t seed) {
+  constexpr double kBesideM = 0.1;
+  auto course =
+      sensors::FollowJoint(stage->scene.body, stage->scene.motion,
+                           stage->scene.body.landmarks[joint], Eigen::Vector3d(kBesideM, 0, 0));
+  return Felt<virtual_devices::WiimoteSensors>(std::move(stage), std::move(course),
+                                               ErrorsOf(true, seed));
+}
+
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
   if (const auto checked = CheckHands(options); !checked) return checked.error();
   const auto link = ParseLink(common.link);
@@ -202,6 +244,10 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
                               virtual_devices::BoardLink(*link, seed + 500));
   }
   AddWiimotes(stage, options.hands, common, *link, plan);
+  if (const auto added = AddSegmentSensors(stage, options.segment_roles, common, *link, plan);
+      !added) {
+    return added.error();
+  }
   if (options.moves) AddMoves(stage, common, *link, plan);
   AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
   if (options.head == "sphere") {
@@ -302,6 +348,12 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
                      "Hand devices: none, move, wiimote, straps, kinect or camera");
   boards->add_option("--head", options.head,
                      "Head tracker: none, or sphere for one on a cap (default none)");
+  boards
+      ->add_option(
+          "--worn", options.segment_roles,
+          "Role of a Wiimote with MotionPlus that is worn on the body, such as pelvis (on a "
+          "belt), trunk, head, left_thigh or left_leg; may be repeated")
+      ->delimiter(',');
   boards->add_option("--camera", options.camera_file,
                      "With --hands camera: camera file of the simulated camera");
   boards->add_option("--frames-to", options.frames_to,

@@ -24,6 +24,8 @@ struct BoardsOptions {
   std::string camera_file, frames_to;  ///< With hands "camera": camera file, frame FIFO.
   bool moves = false;         ///< With hands "camera": PS Moves in the fists light the spheres.
   std::string head = "none";  ///< none, or sphere: one on a cap, as a tracker sees it.
+  /// Roles of Wiimotes with MotionPlus that are worn on the body (JointOfRole).
+  std::vector<std::string> segments;
   /// A hand that is lost for a while: its Wiimote out of reach, or not seen.
   std::string lost_hand;  ///< left or right; empty: none is.
   double lost_from_s = 0, lost_for_s = 0;
@@ -41,6 +43,12 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common);
 /// Readings of a Wiimote in the fist of side 0 (left) or 1 (right). A copy starts from the
 /// beginning.
 SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
+                                      std::uint64_t seed);
+
+/// The joint whose segment a device of this role is worn on; nothing for other roles.
+std::optional<body::Landmark> JointOfRole(stream::DeviceRole role);
+/// Readings of a Wiimote worn on the segment that turns with a joint.
+SimulatedDevice::WiimoteMotion OnBody(std::shared_ptr<const Stage> stage, body::Landmark joint,
                                       std::uint64_t seed);
 
 /// Readings of a Wiimote strapped to a segment of that arm.

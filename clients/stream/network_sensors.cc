@@ -67,7 +67,7 @@ class Receiver {
         link_(io_, {.to = to,
                     .client_name = "footing-stream sensors",
                     .on_open = [this] { AttachAll(); },
-                    .on_close = [this] { log::Warning("footingd is gone; waiting for it"); }}) {}
+                    .on_close = [] { log::Warning("footingd is gone; waiting for it"); }}) {}
 
   Result<void> Run(double seconds) {
     const auto address = transport::ParseAddress("tcp:" + options_.listen);

@@ -109,7 +109,7 @@ class Cursor {
 };
 
 stream::DeviceRole RoleOf(std::uint32_t number) {
-  const bool is_known = number <= static_cast<std::uint32_t>(stream::DeviceRole::kRightForearm);
+  const bool is_known = number <= static_cast<std::uint32_t>(stream::kDeviceRoles.back());
   return is_known ? static_cast<stream::DeviceRole>(number) : stream::DeviceRole::kUnspecified;
 }
 

@@ -105,6 +105,12 @@ std::string RoleText(stream::DeviceRole role) {
       return "the left forearm";
     case stream::DeviceRole::kRightForearm:
       return "the right forearm";
+    case stream::DeviceRole::kPelvis:
+      return "the belt";
+    case stream::DeviceRole::kLeftThigh:
+      return "the left thigh";
+    case stream::DeviceRole::kRightThigh:
+      return "the right thigh";
     case stream::DeviceRole::kLeftBoard:
       return "the left board";
     case stream::DeviceRole::kRightBoard:

@@ -91,6 +91,9 @@ Mounted MountedAs(stream::DeviceRole role) {
     case stream::DeviceRole::kRightUpperArm:
     case stream::DeviceRole::kLeftForearm:
     case stream::DeviceRole::kRightForearm:
+    case stream::DeviceRole::kPelvis:
+    case stream::DeviceRole::kLeftThigh:
+    case stream::DeviceRole::kRightThigh:
     case stream::DeviceRole::kEditor:
     case stream::DeviceRole::kUnspecified:
       return {};

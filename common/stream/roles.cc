@@ -47,6 +47,12 @@ std::uint32_t LedsOf(DeviceRole role) {
       return 0b0111;
     case DeviceRole::kRightForearm:
       return 0b1110;
+    case DeviceRole::kPelvis:
+      return 0b1101;
+    case DeviceRole::kLeftThigh:
+      return 0b1011;
+    case DeviceRole::kRightThigh:
+      return 0b1100;
     case DeviceRole::kRightBoard:
     case DeviceRole::kUnspecified:
       return 0;

@@ -15,7 +15,8 @@ std::vector<DeviceRole> RolesOf(UserInterface interface, TurnSource turn_by);
 
 /// The lamps that show a role, bits 0 to 3: left hand 1, right hand 2, left leg 3, right leg 4,
 /// head 1 and 4, trunk 1 and 3, editor 2 and 3, left upper arm 1 and 2, right upper arm 2 and 4,
-/// left forearm 1 to 3, right forearm 2 to 4. A board has the first lamp alone: lit on the left
+/// left forearm 1 to 3, right forearm 2 to 4, pelvis 1, 3 and 4, left thigh 1, 2 and 4, right thigh
+/// 3 and 4. A board has the first lamp alone: lit on the left
 /// one, dark on the right one. 0 without a role.
 std::uint32_t LedsOf(DeviceRole role);
 

@@ -1,7 +1,8 @@
 """The hands of the pose engine, from devices to the body: Wiimotes with MotionPlus in the fists, one of
 which is lost and told so, or strapped on upper arms and forearms; a Kinect, late; rendered frames of two spheres through footing-camera; of a third one on a cap; and none.
+Or a tracker's hands, with Wiimotes worn on a belt and the thighs, which count from the first squat on.
 
-Usage: pose_hands.py BINARY_FOLDER wiimote|straps|kinect|camera|cap|none
+Usage: pose_hands.py BINARY_FOLDER wiimote|straps|kinect|camera|cap|none|worn
 """
 import json
 import os
@@ -14,7 +15,7 @@ from pose_line import SKIPPED, Watcher, check_t_pose, with_t_pose
 # Joints, wrists, cm. Generous: the made person moves at ease, but every latency counts as an error,
 # and other people's arms are what the Wiimotes' are learned from.
 BOUNDS = {"wiimote": (12, 30), "straps": (11, 16), "kinect": (11, 16), "camera": (11, 16), "cap": (8, 16),
-          "none": (25, 70)}
+          "none": (25, 70), "worn": (8, 8)}
 SECONDS = 17
 LOST_FOR_S = 2
 
@@ -25,7 +26,7 @@ def check_the_body(stage, hands):
     print(hands, seen)
     check_t_pose(seen)
     assert seen["resets"] == 0, seen
-    assert seen["hands"] == {"straps": "wiimote", "cap": "camera"}.get(hands, hands), seen
+    assert seen["hands"] == {"straps": "wiimote", "cap": "camera", "worn": "move"}.get(hands, hands), seen
     assert seen["compared_frames"] > 400, seen
     mpjpe_cm, wrists_cm = BOUNDS[hands]
     assert seen["mpjpe_cm"] < mpjpe_cm, seen
@@ -46,10 +47,20 @@ def start(stage, hands, *words):
         stage.start("footing-camera", "--camera", camera, "--fifo", fifo, "--stamped", "--simulated", "--json", "--to",
                     stage.devices)
         words += ("--camera", camera, "--frames-to", fifo)
+    if hands == "worn":
+        hands = "move"
+        words += ("--worn", "pelvis,left_thigh,right_thigh")
     stage.start("footing-stream", "boards", "--motion", "demo", "--hands", hands, "--to",
                 stage.devices, *words)
     log = stage.folder / "footing-stream.log"
     stage.wait_for(lambda: "attached" in log.read_text(), "the stand-ins to attach", 60)
+
+
+def check_worn(stage, watcher):
+    """They wait for a squat after the T-pose, and say so."""
+    body = watcher.wait(lambda body: "squat once" in body["note"], "the wish for a squat", 40)
+    assert "pelvis, left thigh, right thigh" in body["note"], body
+    watcher.wait(lambda body: body["calibrated"] and "squat once" not in body["note"], "the squat", 60)
 
 
 def check_loss(stage, watcher):
@@ -81,6 +92,8 @@ def run(binaries, hands):
         stage.wait_for_socket(stage.simulation)
         loses = ("--lose-hand", "left", "--lose-from-s", SECONDS + 8, "--lose-for-s", LOST_FOR_S)
         start(stage, hands, *(loses if hands == "wiimote" else ()))
+        if hands == "worn":
+            check_worn(stage, Watcher(stage.simulation))
         check_the_body(stage, hands)
         if hands == "wiimote":
             check_loss(stage, Watcher(stage.simulation))

@@ -13,8 +13,7 @@
 namespace footing::virtual_sensors {
 namespace {
 
-constexpr double kStrapShare = 0.5;   // Share of the way along its segment.
-constexpr double kBeltBehindM = 0.1;  // Distance behind the middle of the pelvis.
+constexpr double kStrapShare = 0.5;  // Share of the way along its segment.
 
 /// At a point of a joint. R_SW: of the T-pose.
 HeldCourse FollowPoint(const body::Body& body, const motion::Motion& motion,
@@ -77,12 +76,13 @@ HeldCourse FollowSegment(const body::Body& body, const motion::Motion& motion, i
   return FollowPoint(body, motion, {joint, middle_J_m}, R_WS.transpose(), cutoff_hz);
 }
 
-HeldCourse FollowPelvis(const body::Body& body, const motion::Motion& motion, double cutoff_hz) {
+HeldCourse FollowJoint(const body::Body& body, const motion::Motion& motion, int joint,
+                       const Eigen::Vector3d& beside_W_m, double cutoff_hz) {
   body::Kinematics at(body.skeleton);
   body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), at);
-  const Eigen::Vector3d behind_J_m =
-      at.R_WJ.front().transpose() * Eigen::Vector3d(-kBeltBehindM, 0, 0);
-  return FollowPoint(body, motion, {0, behind_J_m}, Eigen::Matrix3d::Identity(), cutoff_hz);
+  const Eigen::Vector3d beside_J_m =
+      at.R_WJ[static_cast<std::size_t>(joint)].transpose() * beside_W_m;
+  return FollowPoint(body, motion, {joint, beside_J_m}, Eigen::Matrix3d::Identity(), cutoff_hz);
 }
 
 HeldErrorConfig HeldErrors::None() {

@@ -28,10 +28,10 @@ enum class ArmSegment { kUpperArm, kForearm };
 HeldCourse FollowSegment(const body::Body& body, const motion::Motion& motion, int side,
                          ArmSegment segment, double cutoff_hz = 10);
 
-/// On a belt, behind the pelvis, without errors of its mounting: in the T-pose S's x points forward
-/// and z up.
-HeldCourse FollowPelvis(const body::Body& body, const motion::Motion& motion,
-                        double cutoff_hz = 10);
+/// On the segment that turns with a joint, `beside_W_m` from the joint in the T-pose, without
+/// errors of its mounting: in the T-pose S's x points forward and z up.
+HeldCourse FollowJoint(const body::Body& body, const motion::Motion& motion, int joint,
+                       const Eigen::Vector3d& beside_W_m, double cutoff_hz = 10);
 
 /// Errors of a Wiimote with MotionPlus and of the hand that holds it; standard deviations unless
 /// said otherwise. Noises, counts and ranges are the devices' (docs/hands.md).

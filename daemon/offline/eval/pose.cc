@@ -32,7 +32,13 @@ void DescribeSensors(const PoseFlags& flags, const pose_run::PoseRun& run, order
   json["mode"] = flags.mode;
   json["hands"] = flags.hands;
   json["head"] = flags.head;
-  json["belt"] = flags.scene.settings.belt;
+  const auto& segments = flags.scene.settings.segments;
+  json["belt"] = std::find(segments.begin(), segments.end(), reconstruction::BodySite::kPelvis) !=
+                 segments.end();
+  json["worn"] = ordered_json::array();
+  for (const auto site : segments) {
+    json["worn"].push_back(reconstruction::kBodySiteNames[static_cast<std::size_t>(site)]);
+  }
   json["boards"] = flags.boards;
   json["boards_limited"] = flags.scene.settings.limited;
   json["cop_outside_sensors_share"] = run.outside_share;

@@ -182,8 +182,15 @@ void AddSensorFlags(CLI::App& command, PoseFlags& flags) {
                   "Tracker of the head: sphere (on a cap, 1 cm noise and 2 cm of its seat), kinect "
                   "(late), none (default)")
       ->check(CLI::IsMember({"sphere", "kinect", "none"}));
-  command.add_flag("--belt", settings.belt,
-                   "A Wiimote with MotionPlus on a belt: attitude of the pelvis");
+  command.add_flag_callback(
+      "--belt", [&flags] { flags.segments.insert(flags.segments.begin(), "pelvis"); },
+      "A Wiimote with MotionPlus on a belt: --worn pelvis");
+  command
+      .add_option(
+          "--worn", flags.segments,
+          "Segment with a Wiimote with MotionPlus: pelvis, chest, head, thighs, shanks, or one "
+          "of them such as left_thigh; may be repeated")
+      ->delimiter(',');
   command.add_flag("--joints", settings.joints,
                    "With --hands kinect: all joints of its skeleton, hidden ones inferred");
   command
@@ -255,6 +262,30 @@ void AddPoseFlags(CLI::App& command, PoseFlags& flags) {
   AddReportFlags(command, flags);
 }
 
+namespace {
+
+/// The segments of a name: both of a side-less one.
+Result<void> AddSites(const std::string& name, std::vector<reconstruction::BodySite>& sites) {
+  const std::size_t before = sites.size();
+  for (std::size_t site = 0; site < reconstruction::kBodySites; ++site) {
+    const std::string known = reconstruction::kBodySiteNames[site];
+    const std::size_t side = known.find('_');
+    const bool both = side != std::string::npos && known.substr(side + 1) + "s" == name;
+    const auto one = static_cast<reconstruction::BodySite>(site);
+    if (known != name && !both) continue;
+    if (std::find(sites.begin(), sites.end(), one) != sites.end()) {
+      return UsageError("--worn names " + known + " twice");
+    }
+    sites.push_back(one);
+  }
+  if (sites.size() > before) return {};
+  return UsageError("--worn " + name +
+                    ": must be pelvis, chest, head, thighs, shanks, or one of a side such as "
+                    "left_thigh");
+}
+
+}  // namespace
+
 Result<void> Translate(PoseFlags& flags) {
   pose_run::Settings& settings = flags.scene.settings;
   settings.hands = flags.hands != "none";
@@ -264,10 +295,13 @@ Result<void> Translate(PoseFlags& flags) {
   if (settings.joints && (flags.hands != "kinect" || flags.boards != "simulated")) {
     return UsageError("--joints goes with --hands kinect and --boards simulated");
   }
+  for (const std::string& name : flags.segments) {
+    if (const auto added = AddSites(name, settings.segments); !added) return added;
+  }
   settings.head = flags.head == "sphere"   ? pose_run::HeadDevice::kSphere
                   : flags.head == "kinect" ? pose_run::HeadDevice::kKinect
                                            : pose_run::HeadDevice::kNone;
-  const bool extra = flags.head != "none" || settings.belt;
+  const bool extra = flags.head != "none" || !settings.segments.empty();
   if (flags.head != "none" && flags.hands == "kinect") {
     return UsageError(
         "--head has --hands move, wiimote, straps and none: the Kinect of the hands "
@@ -275,7 +309,7 @@ Result<void> Translate(PoseFlags& flags) {
   }
   if (extra && (flags.boards == "insoles" || flags.mode == "paper")) {
     return UsageError(
-        "--head and --belt are for the best mode on boards, not for --mode paper or "
+        "--head, --worn and --belt are for the best mode on boards, not for --mode paper or "
         "--boards insoles");
   }
   if (flags.boards == "insoles" && flags.hands != "move" && flags.hands != "none") {
@@ -313,7 +347,8 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
   return {
       {"hand_sd_m", &c.hand_sd_m},
       {"arm_spread", &c.arm_spread},
-      {"belt_sd_rad", &c.belt_sd_rad},
+      {"segment_sd_rad", &c.segment_sd_rad},
+      {"pelvis_sd_rad", &c.pelvis_sd_rad},
       {"foot_along", &c.foot.along},
       {"foot_across", &c.foot.across},
       {"ankle_up", &c.foot.ankle_up},

@@ -101,6 +101,7 @@ struct PoseFlags {
   reconstruction::Options options;
   std::vector<std::string> models, ablate, oracle, constants;
   std::string hands = "move", mode = "best", boards = "simulated", head = "none";
+  std::vector<std::string> segments;
   double lag_ms = 0, loop_minutes = 0, yaw_error_deg = 0, height_m = 0;
   std::string figures;
   bool baselines = true, ablations = false, claims = false, same_person = false;

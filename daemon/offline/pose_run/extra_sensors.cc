@@ -52,7 +52,19 @@ namespace {
 
 constexpr double kLeastSdM = 0.001;
 // Apart from the seeds of boards (twice the run's and one more), hands and arms.
-constexpr std::uint64_t kHeadSeed = 104729, kBeltSeed = 1299709;
+constexpr std::uint64_t kHeadSeed = 104729, kSegmentSeed = 1299709, kSiteSeed = 15485863;
+constexpr double kBehindM = 0.1;  // From a segment's joint.
+
+std::uint64_t SeedOf(reconstruction::BodySite site, std::uint64_t seed) {
+  return seed + kSegmentSeed + kSiteSeed * static_cast<std::uint64_t>(site);
+}
+
+/// Thighs have the most soft tissue over their bone (Leardini et al., Gait & Posture 21, 2005).
+double SlipOf(reconstruction::BodySite site) {
+  const bool is_thigh =
+      site == reconstruction::BodySite::kLeftThigh || site == reconstruction::BodySite::kRightThigh;
+  return is_thigh ? 0.08 : 0.05;
+}
 
 constexpr std::size_t kHeadJoint = body::IndexOf(stream::BodyJoint::kHead);
 
@@ -96,14 +108,18 @@ void HeadTracker::Advance(const body::Kinematics& at, bool in_t_pose,
   head.sd_m.setConstant(std::max(errors_.noise_m, kLeastSdM));
 }
 
-Belt::Belt(const virtual_sensors::Scene& scene, const BeltErrors& errors, std::uint64_t seed)
-    : course_(virtual_sensors::FollowPelvis(scene.body, scene.motion)),
+BodySensor::BodySensor(const virtual_sensors::Scene& scene, reconstruction::BodySite site,
+                       const BodySensorErrors& errors, std::uint64_t seed)
+    : site_(site),
+      course_(virtual_sensors::FollowJoint(
+          scene.body, scene.motion, scene.body.landmarks[reconstruction::JointOf(site)],
+          Eigen::Vector3d(site == reconstruction::BodySite::kPelvis ? -kBehindM : kBehindM, 0, 0))),
       errors_(errors),
-      device_(Seeded(errors.device, seed + kBeltSeed)),
-      random_(seed + kBeltSeed + 1),
+      device_(Seeded(errors.device, SeedOf(site, seed))),
+      random_(SeedOf(site, seed) + 1),
       reading_s_(1 / scene.motion.rate_hz) {}
 
-arms::HandState Belt::Until(Eigen::Index column, double step_s) {
+arms::HandState BodySensor::Until(Eigen::Index column, double step_s) {
   for (; next_ <= column; ++next_) {
     const auto reading = device_.Advance(course_.specific_force_S_mps2.col(next_),
                                          course_.angular_velocity_S_radps.col(next_), reading_s_);
@@ -119,19 +135,25 @@ arms::HandState Belt::Until(Eigen::Index column, double step_s) {
   return state;
 }
 
-ExtraSensors::ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head, bool belt,
+ExtraSensors::ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head,
+                           const std::vector<reconstruction::BodySite>& segments,
                            std::uint64_t seed, double step_s)
     : step_s_(step_s) {
   if (head != HeadDevice::kNone) head_.emplace(scene.body, head, HeadErrors{}, seed, step_s);
-  if (belt) belt_.emplace(scene, BeltErrors{}, seed);
+  for (const reconstruction::BodySite site : segments) {
+    BodySensorErrors errors;
+    errors.slip_rad = SlipOf(site);
+    segments_.emplace_back(scene, site, errors, seed);
+  }
 }
 
 void ExtraSensors::Advance(const body::Kinematics& at, Eigen::Index column, bool in_t_pose,
                            bool aligns, reconstruction::Inputs& inputs) {
   if (head_) head_->Advance(at, in_t_pose, inputs);
-  if (!belt_) return;
-  inputs.belt = belt_->Until(column, step_s_);
-  if (aligns) belt_->Align();
+  for (BodySensor& sensor : segments_) {
+    inputs.turns[static_cast<std::size_t>(sensor.site())] = sensor.Until(column, step_s_);
+    if (aligns) sensor.Align();
+  }
 }
 
 }  // namespace footing::pose_run

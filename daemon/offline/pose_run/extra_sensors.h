@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -90,29 +91,33 @@ class HeadTracker {
   KinectBody kinect_;
 };
 
-/// Errors of a belt beside those of its Wiimote with MotionPlus (virtual_sensors::HeldErrorConfig).
-struct BeltErrors {
+/// Errors of a sensor on a segment beside those of a Wiimote with MotionPlus
+/// (virtual_sensors::HeldErrorConfig).
+struct BodySensorErrors {
   virtual_sensors::HeldErrorConfig device;
-  /// Slip of the belt about each axis of the pelvis, over skin and clothes: it comes and goes
-  /// within such a time.
+  /// Slip about each axis of the segment, over skin, muscles and clothes: it comes and goes within
+  /// such a time.
   double slip_rad = 0.05;
   double slip_s = 0.5;
 };
 
-/// A simulated Wiimote with MotionPlus on a belt.
-class Belt {
+/// A simulated Wiimote with MotionPlus on a segment.
+class BodySensor {
  public:
-  Belt(const virtual_sensors::Scene& scene, const BeltErrors& errors, std::uint64_t seed);
+  BodySensor(const virtual_sensors::Scene& scene, reconstruction::BodySite site,
+             const BodySensorErrors& errors, std::uint64_t seed);
 
-  /// How the pelvis has turned, by the samples up to this column of the scene's motion, `step_s`
+  reconstruction::BodySite site() const { return site_; }
+  /// How the segment has turned, by the samples up to this column of the scene's motion, `step_s`
   /// after the call before.
   arms::HandState Until(Eigen::Index column, double step_s);
   /// The T-pose is held and was for some seconds.
   void Align() { attitude_.Align(); }
 
  private:
+  reconstruction::BodySite site_;
   virtual_sensors::HeldCourse course_;
-  BeltErrors errors_;
+  BodySensorErrors errors_;
   virtual_sensors::HeldErrors device_;
   noise::Random random_;
   arms::HandAttitude attitude_;
@@ -124,7 +129,8 @@ class Belt {
 /// Those of them that there are.
 class ExtraSensors {
  public:
-  ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head, bool belt, std::uint64_t seed,
+  ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head,
+               const std::vector<reconstruction::BodySite>& segments, std::uint64_t seed,
                double step_s);
 
   /// Puts what they measure into the inputs of a frame, whose joints are `at`. `in_t_pose`: it
@@ -134,7 +140,7 @@ class ExtraSensors {
 
  private:
   std::optional<HeadTracker> head_;
-  std::optional<Belt> belt_;
+  std::vector<BodySensor> segments_;
   double step_s_;
 };
 

@@ -83,7 +83,7 @@ void MeasureHands(const body::Body& body, const body::Kinematics& at, double noi
 PoseRun WithoutExtras(PoseRun run) {
   for (Frame& frame : run.frames) {
     if (!reconstruction::IsSkeleton(frame.inputs.joints)) frame.inputs.joints = {};
-    frame.inputs.belt = {};
+    frame.inputs.turns = {};
   }
   return run;
 }
@@ -112,7 +112,7 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
   KinectBody kinect(scene.body, settings.seed, 1 / settings.rate_hz, options);
   body::Kinematics at(scene.body.skeleton);
   const double step_s = 1 / settings.rate_hz;
-  ExtraSensors extra(scene, settings.head, settings.belt, settings.seed, step_s);
+  ExtraSensors extra(scene, settings.head, settings.segments, settings.seed, step_s);
   const auto aligned = static_cast<std::size_t>(kAlignedS * settings.rate_hz);
   const std::size_t count = FrameCount(scene, settings.rate_hz);
   std::size_t loaded = 0, outside = 0;

@@ -54,10 +54,10 @@ struct Settings {
   HandDevice hand_device = HandDevice::kMove;
   /// With kKinect: the joints of its skeleton, too, with what the body hides of it from the camera.
   bool joints = false;
-  virtual_sensors::KinectOptions kinect = {};  ///< Options of the joints.
-  double hand_noise_m = 0.01;                  ///< White, of each axis; of kMove.
-  HeadDevice head = HeadDevice::kNone;         ///< A tracker of the head alone.
-  bool belt = false;                           ///< A Wiimote with MotionPlus on a belt.
+  virtual_sensors::KinectOptions kinect = {};      ///< Options of the joints.
+  double hand_noise_m = 0.01;                      ///< White, of each axis; of kMove.
+  HeadDevice head = HeadDevice::kNone;             ///< A tracker of the head alone.
+  std::vector<reconstruction::BodySite> segments;  ///< Segments with a Wiimote with MotionPlus.
   bool perfect_devices =
       false;  ///< For kWiimote and kStraps: they and their mounting have no errors.
   virtual_sensors::CellErrorConfig errors;
@@ -123,7 +123,7 @@ void MeasureHands(const body::Body& body, const body::Kinematics& at, double noi
                   noise::Random& random,
                   std::array<reconstruction::HandInput, reconstruction::kHands>& hands);
 
-/// The same frames without the head and the belt of the extra sensors; a whole skeleton stays.
+/// The same frames without the head and the worn ones of the extra sensors; a whole skeleton stays.
 PoseRun WithoutExtras(PoseRun run);
 
 /// Vertical force and COP under each foot at one time: of the scene, and its motion's column then.

@@ -47,7 +47,7 @@ reconstruction::Truth TruthOf(PoseWay way, const pose_run::Frame& frame) {
 reconstruction::Inputs InputsOf(PoseWay way, const reconstruction::Inputs& all) {
   reconstruction::Inputs inputs = all;
   if (way < PoseWay::kHead || way == PoseWay::kBelt) inputs.joints = {};
-  if (way < PoseWay::kBelt) inputs.belt = {};
+  if (way < PoseWay::kBelt) inputs.turns = {};
   return inputs;
 }
 

@@ -596,7 +596,7 @@ std::vector<PoseTake> TakesOf(const std::vector<const Clip*>& clips, std::uint64
 Result<pose_run::PoseRun> SimulateTake(const PoseTake& take, pose_run::HeadDevice head, bool belt) {
   pose_run::Settings settings;
   settings.head = head;
-  settings.belt = belt;
+  if (belt) settings.segments = {reconstruction::BodySite::kPelvis};
   settings.errors.noise_kg = kCellNoiseKg;
   settings.errors.seed = settings.seed = take.seed;
   const motion::Motion& motion = take.clip->motion;

@@ -66,6 +66,20 @@ PoseBasis Leading(PoseBasis basis, double share) {
   return basis;
 }
 
+PoseBasis Widened(const PoseBasis& basis, const Eigen::VectorXd& direction) {
+  const Eigen::MatrixXd scaled = basis.modes * basis.sd.asDiagonal();
+  const Eigen::MatrixXd covariance =
+      scaled * scaled.transpose() + direction * direction.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(covariance);
+  PoseBasis widened = basis;
+  // From the largest variance down, as those that a basis has.
+  const int size = std::min(basis.size() + 1, basis.dof());
+  widened.modes = solved.eigenvectors().rowwise().reverse().leftCols(size);
+  widened.inverse = widened.modes.transpose();
+  widened.sd = solved.eigenvalues().reverse().head(size).cwiseMax(1e-12).cwiseSqrt();
+  return widened;
+}
+
 PoseBasis Unconnected(const PoseBasis& basis) {
   PoseBasis single;
   single.mean = basis.mean;

@@ -44,6 +44,8 @@ PoseBasis FitBasis(const Eigen::Ref<const Eigen::MatrixXd>& poses, const BasisOp
 PoseBasis Resized(PoseBasis basis, double scale);
 /// The components that hold this share of the variance.
 PoseBasis Leading(PoseBasis basis, double share);
+/// The same with more variance along this direction, by its square.
+PoseBasis Widened(const PoseBasis& basis, const Eigen::VectorXd& direction);
 /// No basis: every degree of freedom for itself, with its own spread.
 PoseBasis Unconnected(const PoseBasis& basis);
 

@@ -218,14 +218,48 @@ void HandAttitude::BeginTPose() {
   rested_s_ = 0;  // The next reading has the whole of the means.
 }
 
-void HandAttitude::Align() {
+void HandAttitude::Align(bool heading_matters) {
   if (rested_s_ < kLeastRestS || mean_force_S_.norm() < kTPoseForceMps2) return;
   const Eigen::Vector3d up_S = mean_force_S_.normalized();
-  if ((Eigen::Vector3d::UnitX() - up_S.x() * up_S).norm() < 1e-3) return;  // Upright: no heading.
+  // Upright: no heading.
+  if (heading_matters && (Eigen::Vector3d::UnitX() - up_S.x() * up_S).norm() < 1e-3) return;
   filter_.Start(mean_force_S_, bias_S_, kTPoseBiasSd);
   R_ST_ = (R_WF_ * filter_.R_WS()).transpose();
   state_ = {};
   state_.valid = true;
+}
+
+void SegmentAttitude::Align() {
+  attitude_.Align(/*heading_matters=*/false);
+  bent_F_.setZero();
+  bent_rad_s_ = 0;
+  state_ = {};
+}
+
+void SegmentAttitude::Advance(const HandReading& reading, double step_s) {
+  constexpr double kBentRad = 0.35;      // A smaller bend shows little of its axis.
+  constexpr double kEnoughRadS = 0.35;   // A second of that.
+  constexpr double kMostRadS = 2;        // Later bends are about any axis.
+  constexpr double kAcrossSdRad = 0.12;  // A squat is so nearly sagittal.
+  attitude_.Advance(reading, step_s);
+  const HandState& turned = attitude_.state();
+  if (!turned.valid) return;
+  const Eigen::Vector3d up_F = turned.turn_W.col(2);
+  const double bent_rad = std::atan2(up_F.head<2>().norm(), up_F.z());
+  if (bent_rad > kBentRad && bent_rad_s_ < kMostRadS) {
+    bent_F_ += bent_rad * step_s * Eigen::Vector2d(-up_F.y(), up_F.x()).normalized();
+    bent_rad_s_ += bent_rad * step_s;
+  }
+  if (bent_F_.norm() < kEnoughRadS) return;
+  const double left_rad = std::atan2(squats_ * bent_F_.y(), squats_ * bent_F_.x());
+  const Eigen::Matrix3d R_WF =
+      Eigen::AngleAxisd(std::numbers::pi / 2 - left_rad, Eigen::Vector3d::UnitZ())
+          .toRotationMatrix();
+  state_ = turned;
+  state_.turn_W = R_WF * turned.turn_W * R_WF.transpose();
+  state_.acceleration_W_mps2 = R_WF * turned.acceleration_W_mps2;
+  state_.angular_velocity_W_radps = R_WF * turned.angular_velocity_W_radps;
+  state_.heading_sd_rad = std::hypot(turned.heading_sd_rad, kAcrossSdRad);
 }
 
 }  // namespace footing::arms

@@ -141,9 +141,9 @@ class HandAttitude {
   /// A T-pose begins: the readings so far do not count. Nothing once aligned.
   void BeginTPose();
   /// The T-pose is held and was for some seconds: the mean turn is the gyroscope's bias, the mean
-  /// force is up, and S's x has its heading. Without a second of readings, or with S's x upright,
-  /// the state stays invalid.
-  void Align();
+  /// force is up, and S's x has its heading. Without a second of readings, or with S's x upright
+  /// where that matters, the state stays invalid.
+  void Align(bool heading_matters = true);
   /// Invalid until aligned.
   const HandState& state() const { return state_; }
 
@@ -153,6 +153,28 @@ class HandAttitude {
   AttitudeFilter filter_;
   Eigen::Matrix3d R_WF_ = Eigen::Matrix3d::Identity();  ///< F: the filter's world.
   Eigen::Matrix3d R_ST_ = Eigen::Matrix3d::Identity();  ///< R_WS^T of the T-pose.
+  HandState state_;
+};
+
+/// The attitude of a device that is worn on a segment at any angle, from a T-pose on. The T-pose
+/// does not show which way the device points: the first bend does, which is that of a squat, about
+/// the person's left. Until then the state is invalid. A value.
+class SegmentAttitude {
+ public:
+  /// `squats`: how the segment turns about the left in a squat, 1 forwards (pelvis, trunk, shank)
+  /// or -1 backwards (thigh).
+  explicit SegmentAttitude(double squats = 1) : squats_(squats) {}
+
+  void Advance(const HandReading& reading, double step_s);
+  void BeginTPose() { attitude_.BeginTPose(); }
+  void Align();
+  const HandState& state() const { return state_; }
+
+ private:
+  double squats_;
+  HandAttitude attitude_{0};
+  Eigen::Vector2d bent_F_ = Eigen::Vector2d::Zero();  ///< Sum of the axes of bends, rad s.
+  double bent_rad_s_ = 0;
   HandState state_;
 };
 

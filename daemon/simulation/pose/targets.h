@@ -55,9 +55,9 @@ inline Eigen::Vector3d PlaceOf(const PointTarget& point, const body::Kinematics&
   return place_m - at.p_WJ[static_cast<std::size_t>(point.from_joint)];
 }
 
-/// Fists or arms (up to 6), ankles and balls (4), the joints of a skeleton (13), and the directions
-/// of a belt (2), with one to spare.
-inline constexpr int kMaxPoints = 26;
+/// Fists or arms (up to 6), ankles and balls (4), the joints of a skeleton (13), and two directions
+/// of each worn sensor (14), with one to spare.
+inline constexpr int kMaxPoints = 38;
 
 /// Terms that one frame's pose is solved for, those of equation (6), each with its standard
 /// deviation. Terms that are not valid are left out.

@@ -178,6 +178,7 @@ void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
   insoles_.feet = inputs.Front().insoles;
   simulated_ = inputs.Front().simulated;
   hand_trouble_ = inputs.Front().hand_trouble;
+  turn_awaits_ = inputs.Front().turn_awaits;
   sensors_.loads.time_s = static_cast<double>(step_) / rate_hz_;
   if (static_cast<double>(quiet_steps_) > kStreamLostS * rate_hz_) {
     for (auto& foot : sensors_.loads.feet) foot.valid = false;
@@ -215,6 +216,7 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
     input.arms_valid[side] = sensors_.arms[side].valid;
   }
   input.hand_trouble = hand_trouble_;
+  input.turn_awaits = turn_awaits_;
   input.hands_off_t_pose = hands_off_t_pose_;
   frame.valid = output.valid;
   frame.t_pose.complete = output.calibrated;

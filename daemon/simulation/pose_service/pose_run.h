@@ -105,6 +105,7 @@ class PoseRun {
   PoseSource source_ = PoseSource::kBoards;
   bool simulated_ = false;
   std::array<HandTrouble, reconstruction::kHands> hand_trouble_{};
+  std::array<bool, reconstruction::kBodySites> turn_awaits_{};
   std::array<bool, reconstruction::kHands> hands_off_t_pose_{};
   std::int64_t solve_ns_ = 0;
 };

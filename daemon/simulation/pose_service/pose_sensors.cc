@@ -133,6 +133,79 @@ void PoseArms::Report(std::int64_t now_ns, PoseInputs& inputs) {
 
 namespace {
 
+/// Attitude at a site, by its index, before its T-pose.
+arms::SegmentAttitude Unaligned(std::size_t site) {
+  const auto where = static_cast<reconstruction::BodySite>(site);
+  const bool is_thigh = where == reconstruction::BodySite::kLeftThigh ||
+                        where == reconstruction::BodySite::kRightThigh;
+  return arms::SegmentAttitude(is_thigh ? -1 : 1);
+}
+
+}  // namespace
+
+PoseSegments::PoseSegments() {
+  for (std::size_t site = 0; site < sensors_.size(); ++site)
+    sensors_[site].attitude = Unaligned(site);
+}
+
+void PoseSegments::Bind(reconstruction::BodySite site, std::optional<std::uint32_t> device) {
+  const auto index = static_cast<std::size_t>(site);
+  if (sensors_[index].device == device) return;
+  sensors_[index] = Sensor();
+  sensors_[index].device = device;
+  sensors_[index].attitude = Unaligned(index);
+}
+
+void PoseSegments::Take(const stream::MotionSample& sample, std::int64_t now_ns) {
+  if (!sample.has_angular_velocity) return;
+  for (std::size_t site = 0; site < sensors_.size(); ++site) {
+    Sensor& sensor = sensors_[site];
+    if (sensor.device != sample.device) continue;
+    const double step_s = NanosecondsToSeconds(sample.sampled_ns - sensor.sampled_ns);
+    const bool first = !sensor.heard.ever;
+    if (!first && step_s <= 0) continue;
+    sensor.heard = {true, now_ns, sample.simulated};
+    sensor.sampled_ns = sample.sampled_ns;
+    if (first || step_s > PoseArms::kTimeoutS) {
+      sensor.attitude = Unaligned(site);  // Where it has turned meanwhile is not known.
+      continue;
+    }
+    const Eigen::Vector3d turn_S = sample.angular_velocity_radps + sample.gyroscope_bias_radps;
+    sensor.attitude.Advance({body::AsHeld(sample.specific_force_mps2), body::AsHeld(turn_S),
+                             sample.clipped_axes != 0 || sample.angular_velocity_clipped},
+                            step_s);
+  }
+}
+
+void PoseSegments::Follow(bool calibrated, double calibration_progress) {
+  const bool was_calibrated = std::exchange(calibrated_, calibrated);
+  const double before = std::exchange(progress_, calibration_progress);
+  for (std::size_t site = 0; site < sensors_.size(); ++site) {
+    Sensor& sensor = sensors_[site];
+    if (calibrated && !was_calibrated) {
+      sensor.attitude.Align();
+    } else if (!calibrated && was_calibrated) {
+      sensor.attitude = Unaligned(site);
+    } else if (!calibrated && (calibration_progress <= 0 || calibration_progress < before)) {
+      sensor.attitude.BeginTPose();
+    }
+  }
+}
+
+void PoseSegments::Report(std::int64_t now_ns, PoseInputs& inputs) const {
+  for (std::size_t site = 0; site < sensors_.size(); ++site) {
+    const Sensor& sensor = sensors_[site];
+    arms::HandState& turn = inputs.sensors.turns[site];
+    turn = sensor.attitude.state();
+    const bool live = sensor.heard.IsLive(now_ns, PoseArms::kTimeoutS);
+    inputs.turn_awaits[site] = live && !turn.valid;
+    turn.valid = turn.valid && live;
+    inputs.simulated |= turn.valid && sensor.heard.simulated;
+  }
+}
+
+namespace {
+
 /// A tracker that says less of itself is not believed.
 constexpr double kLeastPointSdM = 0.002;
 constexpr double kMostPointSdM = 1;
@@ -289,6 +362,17 @@ constexpr std::array<std::pair<arms::Place, Sides>, 3> kArmRoles{{
     {arms::Place::kForearm, {DeviceRole::kLeftForearm, DeviceRole::kRightForearm}},
 }};
 
+constexpr std::array<std::pair<reconstruction::BodySite, DeviceRole>, reconstruction::kBodySites>
+    kSegmentRoles{{
+        {reconstruction::BodySite::kPelvis, DeviceRole::kPelvis},
+        {reconstruction::BodySite::kChest, DeviceRole::kTrunk},
+        {reconstruction::BodySite::kHead, DeviceRole::kHead},
+        {reconstruction::BodySite::kLeftThigh, DeviceRole::kLeftThigh},
+        {reconstruction::BodySite::kRightThigh, DeviceRole::kRightThigh},
+        {reconstruction::BodySite::kLeftShank, DeviceRole::kLeftLeg},
+        {reconstruction::BodySite::kRightShank, DeviceRole::kRightLeg},
+    }};
+
 /// A device of that kind in that role.
 std::optional<std::uint32_t> DeviceWith(const rig::Follower& follower, DeviceRole role,
                                         stream::DeviceKind kind) {
@@ -320,6 +404,10 @@ void PoseSensors::Bind() {
     for (const auto& [place, roles] : kArmRoles) {
       arms_.Bind(side, DeviceWith(follower_, roles[side], stream::DeviceKind::kWiimote), place);
     }
+  }
+  for (const auto& [site, role] : kSegmentRoles) {
+    const stream::DeviceStatus* device = follower_.With(role);
+    segments_.Bind(site, device == nullptr ? std::nullopt : std::optional(device->device));
   }
   const stream::BoardLayout layout = follower_.Layout();
   PlaceCells(layout.left, layout.left_geometry, inputs_.sensors.loads.feet[0]);
@@ -441,11 +529,13 @@ void PoseSensors::OnTick(const v1::Tick& message, std::int64_t now_ns) {
   }
   for (const stream::MotionSample& sample : tick.motion) {
     arms_.Take(sample, now_ns);
+    segments_.Take(sample, now_ns);
     for (TrackedHand& hand : hands_) hand.Feel(sample);
   }
   DropOld(now_ns);
   ReportHands(now_ns, tick.host_ns);
   arms_.Report(now_ns, inputs_);
+  segments_.Report(now_ns, inputs_);
   inputs_.sensor_epoch = tick.epoch;
   inputs_.sensor_sequence = tick.sequence;
   out_.Write(inputs_);

@@ -67,6 +67,34 @@ class PoseArms {
   std::int64_t reported_ns_ = 0;
 };
 
+/// How segments have turned since the T-pose by the devices worn on them, of any kind that has a
+/// gyroscope, in the roles pelvis (on a belt), trunk (chest), head, and of each side thigh and leg
+/// (shank). A device counts from the first squat after the T-pose on (arms::SegmentAttitude). One
+/// that is not heard for longer than PoseArms::kTimeoutS counts for nothing until the next T-pose.
+class PoseSegments {
+ public:
+  PoseSegments();
+  /// Which device is worn there.
+  void Bind(reconstruction::BodySite site, std::optional<std::uint32_t> device);
+  void Take(const stream::MotionSample& sample, std::int64_t now_ns);
+  /// Takes in the engine's report on its T-pose.
+  void Follow(bool calibrated, double calibration_progress);
+  /// Puts what they show into the inputs.
+  void Report(std::int64_t now_ns, PoseInputs& inputs) const;
+
+ private:
+  struct Sensor {
+    std::optional<std::uint32_t> device;
+    rig::LastHeard heard;
+    std::int64_t sampled_ns = 0;
+    arms::SegmentAttitude attitude;
+  };
+
+  std::array<Sensor, reconstruction::kBodySites> sensors_;
+  bool calibrated_ = false;
+  double progress_ = 0;
+};
+
 /// A point that is not heard of for longer counts as not seen.
 inline constexpr double kPointTimeoutS = 0.15;
 
@@ -127,7 +155,8 @@ class TrackedHand {
 /// Turns ticks of the sensor daemon into inputs of the pose engine, on the io thread: the newest
 /// raw sample of the rig's left and right board with its cells' places in W and what they have felt
 /// so far, of its insoles, of its hands and of the joints of its skeleton as they have gone on
-/// since the tracker saw them, and how its arms are held by the Wiimotes on them.
+/// since the tracker saw them, and how its arms are held and its segments turned by the devices on
+/// them.
 ///
 /// Two boards in the layout of one are not followed: they would be in one place.
 /// A board or an insole without samples, or a hand or joint not seen, for longer than its timeout
@@ -151,6 +180,7 @@ class PoseSensors {
   /// Takes in the engine's report on its T-pose, frame by frame: Wiimotes are aligned by it.
   void Follow(const PoseFrame& frame) {
     arms_.Follow(frame.t_pose.complete, frame.t_pose.progress);
+    segments_.Follow(frame.t_pose.complete, frame.t_pose.progress);
   }
   /// Asks the engine for a new T-pose.
   void Calibrate();
@@ -200,6 +230,7 @@ class PoseSensors {
   rig::LastHeard joint_tracker_heard_;
   std::string board_problem_;
   PoseArms arms_;
+  PoseSegments segments_;
   PoseInputs inputs_;
 };
 

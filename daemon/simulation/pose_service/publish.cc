@@ -355,6 +355,21 @@ void AddHands(const PoseFrame& frame, std::string& note) {
   }
 }
 
+/// Segments whose sensors wait for the squat that shows which way they face.
+void AddSegmentSensors(const PoseFrame& frame, std::string& note) {
+  std::string waiting;
+  for (std::size_t site = 0; site < reconstruction::kBodySites; ++site) {
+    // A head hardly bends in a squat: it counts once it has nodded, and nobody is asked to.
+    const bool is_head = site == static_cast<std::size_t>(reconstruction::BodySite::kHead);
+    if (!frame.input.turn_awaits[site] || is_head) continue;
+    std::string name = reconstruction::kBodySiteNames[site];
+    std::replace(name.begin(), name.end(), '_', ' ');
+    waiting += (waiting.empty() ? "" : ", ") + name;
+  }
+  if (!waiting.empty())
+    Add(note, "squat once: which way the sensor faces is not known (" + waiting + ")");
+}
+
 void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) {
   if (subject.mass_kg <= 0 || frame.t_pose.mass_kg <= 0) return;
   const double difference = frame.t_pose.mass_kg / subject.mass_kg - 1;
@@ -408,6 +423,7 @@ std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
            !frame.valid)
     Add(note, "what is measured fits no pose that the model knows: this one is a guess");
   AddHands(frame, note);
+  AddSegmentSensors(frame, note);
   AddMass(frame, subject, note);
   return note;
 }

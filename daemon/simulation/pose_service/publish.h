@@ -39,6 +39,8 @@ struct PoseInputs {
   /// instead of the boards.
   std::array<reconstruction::InsoleFoot, momentum::kFeet> insoles;
   std::array<HandTrouble, reconstruction::kHands> hand_trouble{};  ///< For people only.
+  /// Worn sensors that are heard and do not know yet which way they face; for people only.
+  std::array<bool, reconstruction::kBodySites> turn_awaits{};
   bool simulated = false;  ///< A simulated device is behind any of it.
   std::uint64_t sensor_epoch = 0;
   std::uint64_t sensor_sequence = 0;
@@ -67,6 +69,7 @@ struct PoseInputStatus {
   std::array<bool, reconstruction::kHands> hands_valid{};  ///< Their places are measured,
   std::array<bool, reconstruction::kHands> arms_valid{};   ///< or how their arms are held.
   std::array<HandTrouble, reconstruction::kHands> hand_trouble{};
+  std::array<bool, reconstruction::kBodySites> turn_awaits{};
   /// Tracked, and not where a T-pose has them: it is not taken while one of them is.
   std::array<bool, reconstruction::kHands> hands_off_t_pose{};
 };

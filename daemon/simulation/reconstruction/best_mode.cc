@@ -254,7 +254,7 @@ void BestMode::SetTargets(const Measurement& then, const Truth& truth, const Out
   }
   // After the feet, whose places are the first targets of their joints.
   AddJointTargets(PointsOf(then.joints), then.joints, state_.targets);
-  AddBeltTargets(*state_.model, then.belt, state_.options.best, state_.targets);
+  AddTurnTargets(*state_.model, then.turns, state_.options.best, state_.targets);
   SetMomentumTargets(*state_.model, then, output.mass_kg, state_.options, state_.targets);
   OverrideMomentumTargets(truth, state_.options, state_.targets);
   state_.MoveTargets();

@@ -50,13 +50,15 @@ std::array<arms::ArmEstimate, kHands> UsableArms(
   return usable;
 }
 
-arms::HandState UsableBelt(const arms::HandState& belt) {
+BodyTurns UsableTurns(const BodyTurns& turns) {
   constexpr double kRounding = 1e-3;
-  arms::HandState usable = belt;
-  const Eigen::Matrix3d square = belt.turn_W.transpose() * belt.turn_W;
-  usable.valid = belt.valid && square.isIdentity(kRounding) && belt.turn_W.determinant() > 0 &&
-                 std::isfinite(belt.heading_sd_rad) && std::isfinite(belt.inclination_sd_rad) &&
-                 belt.heading_sd_rad >= 0 && belt.inclination_sd_rad >= 0;
+  BodyTurns usable = turns;
+  for (arms::HandState& one : usable) {
+    const Eigen::Matrix3d square = one.turn_W.transpose() * one.turn_W;
+    one.valid = one.valid && square.isIdentity(kRounding) && one.turn_W.determinant() > 0 &&
+                std::isfinite(one.heading_sd_rad) && std::isfinite(one.inclination_sd_rad) &&
+                one.heading_sd_rad >= 0 && one.inclination_sd_rad >= 0;
+  }
   return usable;
 }
 
@@ -115,7 +117,7 @@ Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& point
                   .arms = UsableArms(inputs.arms),
                   .momentum = {},
                   .joints = UsableJoints(inputs.joints, origin_m_),
-                  .belt = UsableBelt(inputs.belt)};
+                  .turns = UsableTurns(inputs.turns)};
   std::optional<momentum::PostureCom> posture;
   if (options_.use_posture && now.both_hands()) posture = FindPosture(contacts.feet, points, now);
   now.momentum = estimator_->Advance(contacts, posture);
@@ -145,7 +147,7 @@ momentum::PostureCom BestEstimate::FindPosture(const Feet& feet, const JointPoin
 void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& points) {
   pose::PoseTargets extra;
   if (!now.skeleton()) AddJointTargets(points, now.joints, extra);
-  AddBeltTargets(*model_, now.belt, options_.best, extra);
+  AddTurnTargets(*model_, now.turns, options_.best, extra);
   MoveOrigin(origin_m_, extra);
   for (int i = 0; i < extra.count; ++i) targets_.Add(extra.points[static_cast<std::size_t>(i)]);
 }
@@ -306,9 +308,8 @@ namespace {
 constexpr double kTrueFootSdM = 0.015, kTrueComSdM = 0.01, kTrueAngularSd = 1;
 // One sweep finds no pose to match a change of momentum exactly: held closer, it stays behind.
 constexpr double kTrueAngularSearchSd = 10;
-constexpr double kHingeM = 0.25;  // Distance at which a turn of the upper arm counts as a length.
-constexpr int kPelvis = 0;        // The root.
-constexpr double kPelvisM = 0.2;  // The same of the pelvis; any length makes the same terms.
+constexpr double kHingeM = 0.25;   // Distance at which a turn of the upper arm counts as a length.
+constexpr double kSegmentM = 0.2;  // The same of worn sensors; any length makes the same terms.
 
 pose::PointTarget FistTarget(const body::Point& fist, const HandInput& hand,
                              const Eigen::Vector3d& sd_m) {
@@ -381,19 +382,24 @@ void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
   }
 }
 
-void AddBeltTargets(const SubjectModel& model, const arms::HandState& belt,
-                    const BestConstants& best, pose::PoseTargets& targets) {
-  if (!belt.valid) return;
-  const Eigen::Matrix3d& R_WJ = model.t_pose_at.R_WJ[kPelvis];
-  const auto add = [&](const Eigen::Vector3d& was_W, const Eigen::Vector3d& sd_m) {
-    targets.Add({kPelvis, kPelvisM * (R_WJ.transpose() * was_W), kPelvisM * (belt.turn_W * was_W),
-                 sd_m, kPelvis});
-  };
-  const double lean_m = kPelvisM * std::hypot(belt.inclination_sd_rad, best.belt_sd_rad);
-  const double turn_m = kPelvisM * std::hypot(belt.heading_sd_rad, best.belt_sd_rad);
-  add(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(lean_m));
-  // How far it points up is the inclination's, which the first one has.
-  add(Eigen::Vector3d::UnitX(), {turn_m, turn_m, kUnknownSdM});
+void AddTurnTargets(const SubjectModel& model, const BodyTurns& turns, const BestConstants& best,
+                    pose::PoseTargets& targets) {
+  for (std::size_t site = 0; site < kBodySites; ++site) {
+    const arms::HandState& turned = turns[site];
+    if (!turned.valid) continue;
+    const int joint = model.body.landmarks[JointOf(static_cast<BodySite>(site))];
+    if (joint < 0) continue;  // This skeleton has none.
+    const Eigen::Matrix3d R_JW =
+        (turned.turn_W * model.t_pose_at.R_WJ[static_cast<std::size_t>(joint)]).transpose();
+    const auto add = [&](const Eigen::Vector3d& way_W, const Eigen::Vector3d& sd_m) {
+      targets.Add({joint, kSegmentM * (R_JW * way_W), kSegmentM * way_W, sd_m, joint});
+    };
+    const double lean_m = kSegmentM * std::hypot(turned.inclination_sd_rad, best.segment_sd_rad);
+    const double turn_m = kSegmentM * std::hypot(turned.heading_sd_rad, best.segment_sd_rad);
+    add(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(lean_m));
+    // How far it points up is the inclination's, which the first one has.
+    add(Eigen::Vector3d::UnitX(), {turn_m, turn_m, kUnknownSdM});
+  }
 }
 
 void AddFeetTargets(const SubjectModel& model, const Measurement& then, const FootSpread& spread,

@@ -27,7 +27,7 @@ struct Measurement {
   std::array<arms::ArmEstimate, kHands> arms;
   momentum::Estimate momentum;
   JointInputs joints = {};
-  arms::HandState belt = {};
+  BodyTurns turns = {};
   /// COM by hands and feet alone, W; only with both hands.
   std::optional<Eigen::Vector3d> posture_com_W_m = std::nullopt;
 
@@ -36,13 +36,13 @@ struct Measurement {
   bool skeleton() const;
 };
 
-/// Hands, joints, arms and belt as they are, those that are not finite or far from `origin_m` as
-/// not valid.
+/// Hands, joints, arms and worn sensors as they are, those that are not finite or far from
+/// `origin_m` as not valid.
 std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& hands,
                                           const Eigen::Vector3d& origin_m);
 JointInputs UsableJoints(const JointInputs& joints, const Eigen::Vector3d& origin_m);
 std::array<arms::ArmEstimate, kHands> UsableArms(const std::array<arms::ArmEstimate, kHands>& arms);
-arms::HandState UsableBelt(const arms::HandState& belt);
+BodyTurns UsableTurns(const BodyTurns& turns);
 
 /// Before the first T-pose and after each request for a new one: stands in a T-pose, nothing valid.
 void ReportTPose(const SubjectModel& model, const Options& options, Output& output);
@@ -70,8 +70,8 @@ class BestEstimate {
 
   /// The COM of poses of hands and feet alone: they use no load, so their errors are their own.
   momentum::PostureCom FindPosture(const Feet& feet, const JointPoints& points, Measurement& now);
-  /// Adds the targets of a tracked head and a belt to hands and feet. Not for the pose about the
-  /// mean of all: the lateral filter knows how that one errs by hands and feet.
+  /// Adds the targets of a tracked head and of worn sensors to hands and feet. Not for the pose
+  /// about the mean of all: the lateral filter knows how that one errs by hands and feet.
   void AddExtraTargets(const Measurement& now, const JointPoints& points);
 
   const SubjectModel* model_;
@@ -194,11 +194,11 @@ void AddHandTargets(const SubjectModel& model, const Measurement& then, const Be
 void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
                          const PaperConstants& constants, pose::PoseTargets& targets);
 
-/// How the belt shows the pelvis turned, as directions that were up and forward in the T-pose: the
-/// way up has the deviation of the inclination, the way forward in level directions that of the
-/// heading.
-void AddBeltTargets(const SubjectModel& model, const arms::HandState& belt,
-                    const BestConstants& best, pose::PoseTargets& targets);
+/// How worn sensors show their segments turned, as the directions of each segment that are up and
+/// forward now: the way up has the deviation of the inclination, the way forward in level
+/// directions that of the heading.
+void AddTurnTargets(const SubjectModel& model, const BodyTurns& turns, const BestConstants& best,
+                    pose::PoseTargets& targets);
 
 /// Both feet by their estimates, with the deviations of recorded feet, or with those of paper mode.
 void AddFeetTargets(const SubjectModel& model, const Measurement& then, const FootSpread& spread,

@@ -181,6 +181,26 @@ pose::GaussNewtonOptions BasisSolverOptions(const Options& options) {
   return solver;
 }
 
+body::Landmark JointOf(BodySite site) {
+  switch (site) {
+    case BodySite::kPelvis:
+      return body::Landmark::kHips;
+    case BodySite::kChest:
+      return body::Landmark::kChest;
+    case BodySite::kHead:
+      return body::Landmark::kHead;
+    case BodySite::kLeftThigh:
+      return body::Landmark::kLeftHip;
+    case BodySite::kRightThigh:
+      return body::Landmark::kRightHip;
+    case BodySite::kLeftShank:
+      return body::Landmark::kLeftKnee;
+    case BodySite::kRightShank:
+      return body::Landmark::kRightKnee;
+  }
+  return body::Landmark::kHips;
+}
+
 pose::GaussNewtonOptions RegressedSolverOptions(const Options& options) {
   pose::GaussNewtonOptions solver = BasisSolverOptions(options);
   solver.prior_weight = options.best.regressed_prior_weight;
@@ -223,6 +243,31 @@ Result<void> CheckLayout(const body::Body& body, const Models& models) {
 }
 
 /// All that does not depend on the mode; the basis has all components.
+/// The pelvis tilts by 1 rad, and trunk and thighs stay.
+Eigen::VectorXd PelvisAlone(const body::Body& body) {
+  constexpr double kAbout = 0.8;  // Cosine of the largest angle between an axis and W's y.
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(body.skeleton.dof);
+  const auto turn = [&](int index, double angle_rad) {
+    const body::Joint& joint = body.skeleton.joint(index);
+    int dof = joint.first_dof;
+    for (const body::Rotation& rotation : joint.rotations) {
+      const double along = joint.axes.col(static_cast<int>(rotation.axis)).y();
+      if (std::abs(along) > kAbout) direction(dof) = along > 0 ? angle_rad : -angle_rad;
+      ++dof;
+    }
+  };
+  const int pelvis = body.landmarks[body::Landmark::kHips];
+  turn(pelvis, 1);
+  turn(body.landmarks[body::Landmark::kLeftHip], -1);
+  turn(body.landmarks[body::Landmark::kRightHip], -1);
+  int spine = body.landmarks[body::Landmark::kNeck];  // Its lowest joint.
+  while (spine > 0 && body.skeleton.joint(spine).parent != pelvis) {
+    spine = body.skeleton.joint(spine).parent;
+  }
+  turn(spine, -1);
+  return direction;
+}
+
 Result<SubjectModel> CommonSubjectModel(const body::Body& body, const Models& models) {
   if (const auto checked = CheckLayout(body, models); !checked) return checked.error();
   SubjectModel model;
@@ -261,12 +306,14 @@ Result<SubjectModel> BestSubjectModel(const body::Body& body, const Models& mode
   auto model = WalkSubjectModel(body, models, options);
   if (!model || !options.use_basis) return model;
   const double size = model->root_height_m() / models.root_height_m;
+  const Eigen::VectorXd pelvis = options.best.pelvis_sd_rad * PelvisAlone(body);
   if (options.use_momentum && !models.regression.empty()) {
     model->regression = models.regression;
-    model->rest = pose::Resized(models.rest, size);
+    model->rest = pose::Widened(pose::Resized(models.rest, size), pelvis);
   }
   if (options.use_posture && !models.posture.empty()) {
-    model->posture = {models.posture.regression, pose::Resized(models.posture.rest, size)};
+    model->posture = {models.posture.regression,
+                      pose::Widened(pose::Resized(models.posture.rest, size), pelvis)};
   }
   return model;
 }

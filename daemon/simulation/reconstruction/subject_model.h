@@ -89,6 +89,24 @@ using HandInput = PointInput;   ///< Middle of the fist (body::Fist).
 using JointInput = PointInput;  ///< A joint of a skeleton (body::SkeletonPoints).
 using JointInputs = std::array<JointInput, stream::kBodyJoints>;  ///< By body::IndexOf.
 
+/// Segments that may wear an inertial sensor, beside hands and arms.
+enum class BodySite {
+  kPelvis,  ///< On a belt.
+  kChest,
+  kHead,
+  kLeftThigh,
+  kRightThigh,
+  kLeftShank,
+  kRightShank,
+};
+inline constexpr std::size_t kBodySites = 7;
+inline constexpr std::array<const char*, kBodySites> kBodySiteNames = {
+    "pelvis", "chest", "head", "left_thigh", "right_thigh", "left_shank", "right_shank"};
+/// The joint whose frame a segment turns with.
+body::Landmark JointOf(BodySite site);
+/// How each segment has turned since the T-pose; by BodySite.
+using BodyTurns = std::array<arms::HandState, kBodySites>;
+
 /// Measurements of the sensors in one frame.
 struct Inputs {
   momentum::ContactLoads loads;
@@ -96,8 +114,7 @@ struct Inputs {
   /// How the arms are held, where their hands are not seen.
   std::array<arms::ArmEstimate, kHands> arms = {};
   JointInputs joints = {};
-  /// How the pelvis has turned since the T-pose, by a device on a belt.
-  arms::HandState belt = {};
+  BodyTurns turns = {};
 };
 
 /// For evaluation: parts of the truth at the instant of the loads, in place of their estimates, to
@@ -137,8 +154,12 @@ enum class Mode { kBest, kPaper };
 struct BestConstants {
   double hand_sd_m = 0.008;  ///< Fist on the hand, beside what the input says.
   double arm_spread = 1.5;   ///< Factor on an arm's deviations: its errors persist for many frames.
-  /// Standard deviation of the belt on the pelvis, about each axis, beside what the attitude says.
-  double belt_sd_rad = 0.07;
+  /// Standard deviation of a worn sensor on its bone, about each axis, beside what the attitude
+  /// says.
+  double segment_sd_rad = 0.07;
+  /// Standard deviation of the pelvis's tilt between trunk and thighs that stay, beside what is
+  /// learned: which tilt a skeleton has in a squat differs between laboratories (docs/pose.md).
+  double pelvis_sd_rad = 0.2;
   FootSpread foot;
   double com_sd_m = 0.005;  ///< Error of the masses, beside what the filters say.
   /// kg m^2/s, beside what the estimate says; 0: the angular momentum is left out, since as it is

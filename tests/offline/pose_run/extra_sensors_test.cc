@@ -29,7 +29,7 @@ motion::Motion Turning(double seconds) {
 PoseRun RunOf(HeadDevice head, bool belt, double seconds = 4) {
   Settings settings;
   settings.head = head;
-  settings.belt = belt;
+  if (belt) settings.segments = {reconstruction::BodySite::kPelvis};
   return RunPose(Turning(seconds), settings, "turning").value();
 }
 
@@ -40,11 +40,11 @@ TEST(ExtraSensors, AddNothingToHandsAndBoards) {
     const auto& theirs = more.frames[i].inputs;
     ASSERT_EQ(ours.hands[0].p_W_m, theirs.hands[0].p_W_m) << i;
     ASSERT_EQ(ours.loads.feet[1].cells[2].load_n, theirs.loads.feet[1].cells[2].load_n) << i;
-    ASSERT_FALSE(ours.joints[kHead].valid || ours.belt.valid) << i;
+    ASSERT_FALSE(ours.joints[kHead].valid || ours.turns[0].valid) << i;
   }
   const PoseRun without = WithoutExtras(more);
   EXPECT_FALSE(without.frames.back().inputs.joints[kHead].valid);
-  EXPECT_FALSE(without.frames.back().inputs.belt.valid);
+  EXPECT_FALSE(without.frames.back().inputs.turns[0].valid);
 }
 
 TEST(ExtraSensors, AHeadsErrorsAreThoseItReports) {
@@ -81,11 +81,11 @@ TEST(ExtraSensors, AKinectShowsTheHeadLateAndLessSurely) {
 
 TEST(ExtraSensors, ABeltShowsHowThePelvisHasTurnedSinceTheTPose) {
   const PoseRun run = RunOf(HeadDevice::kNone, true, 12);
-  EXPECT_FALSE(run.frames[static_cast<std::size_t>(5 * run.rate_hz)].inputs.belt.valid);
+  EXPECT_FALSE(run.frames[static_cast<std::size_t>(5 * run.rate_hz)].inputs.turns[0].valid);
   body::Kinematics at(run.body.skeleton);
   double square = 0, sd = 0, furthest_rad = 0;
   for (std::size_t i = run.judged_from; i < run.frames.size(); ++i) {
-    const arms::HandState& belt = run.frames[i].inputs.belt;
+    const arms::HandState& belt = run.frames[i].inputs.turns[0];
     ASSERT_TRUE(belt.valid) << i;
     body::ComputeKinematics(run.body.skeleton, run.frames[i].q, at);
     const Eigen::AngleAxisd off(belt.turn_W.transpose() * at.R_WJ[0]);
@@ -98,7 +98,8 @@ TEST(ExtraSensors, ABeltShowsHowThePelvisHasTurnedSinceTheTPose) {
   // The slip of the belt about three axes, and the device's own.
   EXPECT_GT(rms_rad, 0.03);
   EXPECT_LT(rms_rad, 0.13);
-  EXPECT_GT(sd, run.frames[run.judged_from].inputs.belt.heading_sd_rad) << "nothing corrects it";
+  EXPECT_GT(sd, run.frames[run.judged_from].inputs.turns[0].heading_sd_rad)
+      << "nothing corrects it";
 }
 
 }  // namespace

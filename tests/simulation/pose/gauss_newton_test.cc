@@ -207,6 +207,24 @@ TEST(Basis, ItsComponentsFallInVarianceAndAShareOfItTakesFewer) {
   EXPECT_GE(fewer.sd.squaredNorm(), 0.5 * world.basis.sd.squaredNorm());
 }
 
+TEST(Basis, MayVaryMoreAlongADirection) {
+  World world;
+  const auto covariance = [](const PoseBasis& basis) {
+    const Eigen::MatrixXd scaled = basis.modes * basis.sd.asDiagonal();
+    return Eigen::MatrixXd(scaled * scaled.transpose());
+  };
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(world.basis.dof());
+  direction(5) = 0.2;
+  direction(8) = -0.2;
+  const PoseBasis wide = Widened(world.basis, direction);
+  const Eigen::MatrixXd expected = covariance(world.basis) + direction * direction.transpose();
+  EXPECT_LT((covariance(wide) - expected).norm(), 1e-8);
+  EXPECT_EQ(wide.mean, world.basis.mean);
+  const Eigen::VectorXd a = Eigen::VectorXd::LinSpaced(wide.size(), -1, 1);
+  EXPECT_LT((wide.inverse * (wide.modes * a) - a).norm(), 1e-9);
+  for (int i = 1; i < wide.size(); ++i) EXPECT_LE(wide.sd(i), wide.sd(i - 1));
+}
+
 TEST(FibonacciSearch, LowersEquation6FrameByFrame) {
   World world;
   FibonacciSearch solver(world.person, world.basis, {});

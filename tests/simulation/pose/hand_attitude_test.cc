@@ -271,5 +271,76 @@ TEST(HandAttitude, LeavesOutWhatIsNotFinite) {
   EXPECT_LT(device.ErrorDeg(rest), 0.5);
 }
 
+/// A segment that rests in the T-pose, then turns about W's axes: its device at any angle.
+class SegmentDevice {
+ public:
+  SegmentDevice(double squats, const Eigen::Matrix3d& R_JS) : attitude(squats), R_JS_(R_JS) {}
+
+  void Rest(double seconds) { Turn(Vector3d::Zero(), seconds); }
+  /// At this rate about axes of W.
+  void Turn(const Vector3d& rate_W_radps, double seconds) {
+    for (int i = 0; i < std::lround(seconds / kTickS); ++i) {
+      const Eigen::Matrix3d R_SW = (R_WJ * R_JS_).transpose();
+      attitude.Advance({R_SW * kUp, R_SW * rate_W_radps + Vector3d(0.02, -0.01, 0.015)}, kTickS);
+      R_WJ = Turned(kTickS * rate_W_radps) * R_WJ;
+    }
+  }
+  double ErrorDeg() const {
+    const Eigen::AngleAxisd off(attitude.state().turn_W * R_WJ.transpose());
+    return RadiansToDegrees(off.angle());
+  }
+
+  SegmentAttitude attitude;
+  Eigen::Matrix3d R_WJ = Eigen::Matrix3d::Identity();
+
+ private:
+  Eigen::Matrix3d R_JS_;
+};
+
+TEST(SegmentAttitude, TheFirstSquatShowsWhichWayADeviceAtAnyAngleFaces) {
+  noise::Random random(5);
+  for (int trial = 0; trial < 40; ++trial) {
+    const Eigen::Matrix3d R_JS = Turned(noise::NormalVector(2, random));
+    const double squats = trial % 2 == 0 ? 1 : -1;
+    SegmentDevice device(squats, R_JS);
+    device.Rest(4);
+    device.attitude.Align();
+    device.Rest(1);
+    EXPECT_FALSE(device.attitude.state().valid) << "which way it faces is not known yet";
+    device.Turn({0, squats * 0.7, 0}, 1.5);  // Down,
+    device.Rest(0.3);
+    device.Turn({0, -squats * 0.7, 0}, 1.5);  // and up.
+    ASSERT_TRUE(device.attitude.state().valid) << trial;
+    device.Turn({0, 0, 0.5}, 1.2);
+    device.Turn({0.6, 0, 0}, 1);
+    EXPECT_LT(device.ErrorDeg(), 2.5) << trial;
+    EXPECT_GT(device.attitude.state().heading_sd_rad, 0.12);
+  }
+}
+
+TEST(SegmentAttitude, StandingAndTurningOnTheSpotShowNoHeading) {
+  SegmentDevice device(1, Eigen::Matrix3d::Identity());
+  device.Rest(4);
+  device.attitude.Align();
+  for (int i = 0; i < 10; ++i) {
+    device.Turn({0, 0, 1}, 1);
+    device.Turn({0.2, 0, 0}, 1);  // Sways by less than a squat.
+    device.Turn({-0.2, 0, 0}, 1);
+  }
+  EXPECT_FALSE(device.attitude.state().valid);
+}
+
+TEST(SegmentAttitude, ADeviceThatPointsUpIsAlignedToo) {
+  Eigen::Matrix3d R_JS;  // Its x is up.
+  R_JS << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+  SegmentDevice device(1, R_JS);
+  device.Rest(4);
+  device.attitude.Align();
+  device.Turn({0, 0.8, 0}, 1.5);
+  device.Turn({0, -0.8, 0}, 1.5);
+  ASSERT_TRUE(device.attitude.state().valid);
+  EXPECT_LT(device.ErrorDeg(), 2);
+}
+
 }  // namespace
 }  // namespace footing::arms

@@ -10,27 +10,31 @@
 namespace footing::reconstruction {
 namespace {
 
-/// A belt that shows the pelvis turned so since the T-pose.
-arms::HandState BeltAt(const Eigen::Matrix3d& turn_W, double heading_sd_rad = 0) {
-  arms::HandState belt;
-  belt.valid = true;
-  belt.turn_W = turn_W;
-  belt.heading_sd_rad = heading_sd_rad;
-  return belt;
+/// A sensor that shows its segment turned so since the T-pose.
+BodyTurns TurnAt(BodySite site, const Eigen::Matrix3d& turn_W, double heading_sd_rad = 0) {
+  BodyTurns turns;
+  arms::HandState& one = turns[static_cast<std::size_t>(site)];
+  one.valid = true;
+  one.turn_W = turn_W;
+  one.heading_sd_rad = heading_sd_rad;
+  return turns;
+}
+BodyTurns BeltAt(const Eigen::Matrix3d& turn_W, double heading_sd_rad = 0) {
+  return TurnAt(BodySite::kPelvis, turn_W, heading_sd_rad);
 }
 
 Eigen::Matrix3d About(const Eigen::Vector3d& axis, double angle_rad) {
   return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
 }
 
-struct BeltTest : testing::Test {
+struct BodyTurnTest : testing::Test {
   World world;
   SubjectModel model = BestSubjectModel(world.person, world.models, world.AtRate()).value();
 
   /// Sum of the squares of the terms, of a pelvis that has turned by `turn_W`.
-  double Cost(const arms::HandState& belt, const Eigen::Matrix3d& turn_W) {
+  double Cost(const BodyTurns& turns, const Eigen::Matrix3d& turn_W) {
     pose::PoseTargets targets;
-    AddBeltTargets(model, belt, {}, targets);
+    AddTurnTargets(model, turns, {}, targets);
     body::Kinematics at = model.t_pose_at;
     at.R_WJ[0] = turn_W * at.R_WJ[0];
     double sum = 0;
@@ -42,18 +46,18 @@ struct BeltTest : testing::Test {
   }
 };
 
-TEST_F(BeltTest, ThePelvisIsAskedToTurnAsTheBeltDoes) {
+TEST_F(BodyTurnTest, ThePelvisIsAskedToTurnAsTheBeltDoes) {
   const Eigen::Matrix3d turn =
       About(Eigen::Vector3d::UnitZ(), 0.6) * About(Eigen::Vector3d(1, 2, 0).normalized(), 0.5);
   EXPECT_NEAR(Cost(BeltAt(turn), turn), 0, 1e-20);
   pose::PoseTargets targets;
-  AddBeltTargets(model, {}, {}, targets);
-  EXPECT_EQ(targets.count, 0) << "no belt";
+  AddTurnTargets(model, {}, {}, targets);
+  EXPECT_EQ(targets.count, 0) << "nothing is turns";
 }
 
-TEST_F(BeltTest, LeaningAndTurningCostWhatTheirDeviationsSay) {
+TEST_F(BodyTurnTest, LeaningAndTurningCostWhatTheirDeviationsSay) {
   constexpr double kSmallRad = 0.01;
-  const double sd_rad = BestConstants{}.belt_sd_rad;
+  const double sd_rad = BestConstants{}.segment_sd_rad;
   const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
   const double expected = std::pow(kSmallRad / sd_rad, 2);
   for (const Eigen::Vector3d& axis :
@@ -67,22 +71,22 @@ TEST_F(BeltTest, LeaningAndTurningCostWhatTheirDeviationsSay) {
               0.01 * little);
 }
 
-TEST_F(BeltTest, WhatIsNoTurnIsNotUsed) {
+TEST_F(BodyTurnTest, WhatIsNoTurnIsNotUsed) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(UsableBelt(BeltAt(About(Eigen::Vector3d::UnitY(), 0.3))).valid);
-  EXPECT_FALSE(UsableBelt(BeltAt(2 * Eigen::Matrix3d::Identity())).valid);
-  EXPECT_FALSE(UsableBelt(BeltAt(-Eigen::Matrix3d::Identity())).valid) << "a mirror image";
-  EXPECT_FALSE(UsableBelt(BeltAt(Eigen::Matrix3d::Constant(kNaN))).valid);
-  EXPECT_FALSE(UsableBelt(BeltAt(Eigen::Matrix3d::Identity(), kNaN)).valid);
+  EXPECT_TRUE(UsableTurns(BeltAt(About(Eigen::Vector3d::UnitY(), 0.3)))[0].valid);
+  EXPECT_FALSE(UsableTurns(BeltAt(2 * Eigen::Matrix3d::Identity()))[0].valid);
+  EXPECT_FALSE(UsableTurns(BeltAt(-Eigen::Matrix3d::Identity()))[0].valid) << "a mirror image";
+  EXPECT_FALSE(UsableTurns(BeltAt(Eigen::Matrix3d::Constant(kNaN)))[0].valid);
+  EXPECT_FALSE(UsableTurns(BeltAt(Eigen::Matrix3d::Identity(), kNaN))[0].valid);
 }
 
-TEST_F(BeltTest, ThePelvisFollowsTheBelt) {
+TEST_F(BodyTurnTest, ThePelvisFollowsTheBelt) {
   const Reconstruction free = world.FreelyMade();
   Reconstruction with = free, without = free;
   constexpr double kTurnRad = 0.3;
   for (std::size_t i = 0; i < 560; ++i) {
     Inputs inputs = world.inputs[i];
-    inputs.belt = BeltAt(About(Eigen::Vector3d::UnitZ(), kTurnRad));
+    inputs.turns = BeltAt(About(Eigen::Vector3d::UnitZ(), kTurnRad));
     with.Advance(inputs);
     without.Advance(world.inputs[i]);
     ASSERT_TRUE(Finite(with.output())) << i;
@@ -92,6 +96,25 @@ TEST_F(BeltTest, ThePelvisFollowsTheBelt) {
     return std::atan2(turn_W(1, 0), turn_W(0, 0));
   };
   EXPECT_GT(turned_rad(with.output()) - turned_rad(without.output()), 0.5 * kTurnRad);
+}
+
+TEST_F(BodyTurnTest, EachSegmentAsksForItsOwnJoint) {
+  // A thigh that is raised level: its heading is about the vertical, its tilt about level axes.
+  const Eigen::Matrix3d raised = About(Eigen::Vector3d::UnitY(), -1.5);
+  for (std::size_t site = 0; site < kBodySites; ++site) {
+    pose::PoseTargets targets;
+    const auto where = static_cast<BodySite>(site);
+    AddTurnTargets(model, TurnAt(where, raised, 0.5), {}, targets);
+    ASSERT_EQ(targets.count, 2) << kBodySiteNames[site];
+    const int joint = model.body.landmarks[JointOf(where)];
+    const Eigen::Matrix3d R_WJ = raised * model.t_pose_at.R_WJ[static_cast<std::size_t>(joint)];
+    for (int i = 0; i < 2; ++i) {
+      const pose::PointTarget& target = targets.points[static_cast<std::size_t>(i)];
+      EXPECT_EQ(target.joint, joint);
+      EXPECT_LT((R_WJ * target.p_J_m - target.p_W_m).norm(), 1e-12) << kBodySiteNames[site];
+    }
+    EXPECT_GT(targets.points[1].sd_m.y(), 5 * targets.points[0].sd_m.y()) << "the heading drifts";
+  }
 }
 
 }  // namespace
