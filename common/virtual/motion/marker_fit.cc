@@ -224,6 +224,22 @@ PosedFrames PosesOfCentres(Fitter& fitter, const MarkerTracks& tracks, const Mar
   return posed;
 }
 
+/// Markers of which the set says where they sit do not jump; points without a name are anywhere.
+Result<void> CheckSteps(const MarkerTracks& tracks, const MarkerCarriers& carriers) {
+  for (std::size_t i = 0; i < tracks.p.size(); ++i) {
+    if (carriers.known[i] < 0) continue;
+    const Eigen::Matrix3Xd& p = tracks.p[i];
+    for (Eigen::Index frame = 1; frame < p.cols(); ++frame) {
+      const double step_m = (p.col(frame) - p.col(frame - 1)).norm();
+      if (std::isnan(step_m)) continue;  // Not seen.
+      auto good =
+          CheckStep(step_m, tracks.rate_hz, tracks.start_s, frame, "marker " + tracks.names[i]);
+      if (!good) return good;
+    }
+  }
+  return {};
+}
+
 /// Where the markers sit: the poses place them, then they place the poses.
 Result<AttachedMarkers> AttachMarkers(Fitter& fitter, const MarkerTracks& tracks,
                                       const MarkerCarriers& carriers, PosedFrames& posed) {
@@ -289,11 +305,12 @@ Result<MarkerFit> FitMarkers(const MarkerTracks& tracks, const MarkerFitOptions&
   out.motion = {std::move(lengths->skeleton), tracks.rate_hz, tracks.start_s, {}};
   const auto landmarks = body::FindLandmarks(out.motion.skeleton);
   if (!landmarks) return landmarks.error();
+  const MarkerCarriers carriers = FindCarriers(out.motion.skeleton, *landmarks, tracks, *set);
+  if (const auto steady = CheckSteps(tracks, carriers); !steady) return steady.error();
   Fitter fitter(out.motion.skeleton, *landmarks);
   PosedFrames posed = PosesOfCentres(fitter, tracks, *set);
   if (posed.frames.empty()) return InvalidData("no frame has all the markers of the pelvis");
-  const auto attached = AttachMarkers(
-      fitter, tracks, FindCarriers(out.motion.skeleton, *landmarks, tracks, *set), posed);
+  const auto attached = AttachMarkers(fitter, tracks, carriers, posed);
   if (!attached) return attached.error();
   FitMotion(fitter, tracks, *attached, posed.poses.front(), out);
   return out;

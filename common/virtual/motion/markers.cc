@@ -34,21 +34,6 @@ Result<void> CheckSeen(const MarkerTracks& tracks, std::size_t least, double lon
   return {};
 }
 
-FileAxes GuessAxes(const MarkerTracks& tracks) {
-  constexpr Eigen::Index kSamples = 50;
-  const Eigen::Index step = std::max<Eigen::Index>(1, tracks.frames() / kSamples);
-  Eigen::Vector3d spread = Eigen::Vector3d::Zero();
-  for (Eigen::Index frame = 0; frame < tracks.frames(); frame += step) {
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Matrix3Xd& track : tracks.p) {
-      const Eigen::Vector3d p = track.col(frame);
-      if (Seen(p)) box.extend(p);
-    }
-    if (!box.isEmpty()) spread += box.sizes();
-  }
-  return spread.y() > spread.z() ? FileAxes::kYUp : FileAxes::kZUp;
-}
-
 Eigen::Vector3d ToWorld(FileAxes axes, const Eigen::Vector3d& p) {
   switch (axes) {
     case FileAxes::kZUp:
@@ -301,6 +286,45 @@ Result<MarkerSet> FindMarkerSet(const MarkerTracks& tracks, std::string_view nam
   }
   if (best == nullptr) return InvalidData(NoKnownSet(tracks, names));
   return *best;
+}
+
+Result<void> CheckStep(double step_m, double rate_hz, double start_s, Eigen::Index frame,
+                       const std::string& what) {
+  constexpr double kFastestMps = 100;  // Ten times the speed of a sprinter.
+  constexpr double kLongestStepM = 2, kLongStepMps = 15;
+  const double speed_mps = step_m * rate_hz;
+  if (speed_mps <= kFastestMps && !(step_m > kLongestStepM && speed_mps > kLongStepMps)) return {};
+  const double time_s = start_s + static_cast<double>(frame) / rate_hz;
+  return InvalidData(what + " moves by " + text::Fixed(step_m, 1) + " m between frames " +
+                     std::to_string(frame) + " and " + std::to_string(frame + 1) + " (" +
+                     text::Fixed(time_s, 3) +
+                     " s), a fault of the recording; cut it there or repair it");
+}
+
+FileAxes GuessAxes(const MarkerTracks& tracks) {
+  constexpr Eigen::Index kSamples = 50;
+  const Eigen::Index step = std::max<Eigen::Index>(1, tracks.frames() / kSamples);
+  const auto set = FindMarkerSet(tracks);
+  Eigen::Vector3d spread = Eigen::Vector3d::Zero(), rise = Eigen::Vector3d::Zero();
+  for (Eigen::Index frame = 0; frame < tracks.frames(); frame += step) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Matrix3Xd& track : tracks.p) {
+      const Eigen::Vector3d p = track.col(frame);
+      if (Seen(p)) box.extend(p);
+    }
+    if (!box.isEmpty()) spread += box.sizes();
+    if (!set) continue;
+    for (const int side : {0, 1}) {
+      const auto place = [&](std::string_view field) -> Eigen::Vector3d {
+        const auto marker = static_cast<std::size_t>(MarkersOf(tracks, *set, field, side).front());
+        return tracks.p[marker].col(frame);
+      };
+      const Eigen::Vector3d up = place(set->shoulder) - place(set->heel);
+      if (Seen(up)) rise += up.cwiseAbs();
+    }
+  }
+  const Eigen::Vector3d& along = rise.isZero(0) ? spread : rise;
+  return along.y() > along.z() ? FileAxes::kYUp : FileAxes::kZUp;
 }
 
 namespace {

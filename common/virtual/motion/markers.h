@@ -36,6 +36,12 @@ inline bool Seen(const Eigen::Vector3d& p) { return p.allFinite(); }
 /// there is not a motion.
 Result<void> CheckSeen(const MarkerTracks& tracks, std::size_t least, double longest_s);
 
+/// InvalidData where `what` moves by `step_m` from the frame before to `frame` as nothing of a
+/// person does: faster than 100 m/s (a recording may lose its person for a moment), or, at a low
+/// rate, by more than 2 m faster than 15 m/s.
+Result<void> CheckStep(double step_m, double rate_hz, double start_s, Eigen::Index frame,
+                       const std::string& what);
+
 /// Axes of a file in those of W (x ahead, y left, z up).
 enum class FileAxes {
   kZUp,        ///< As W: most C3D files.
@@ -43,8 +49,9 @@ enum class FileAxes {
   kYUpZAhead,  ///< Animation: z ahead, y up, x left.
 };
 
-/// Which way is up in tracks that do not say: the axis along which the markers of a person, who
-/// mostly stands, spread furthest. Between y and z; y is taken for OpenSim's.
+/// Which way is up in tracks that do not say, y (taken for OpenSim's) or z: the axis along which
+/// the shoulders of a person, who mostly stands, are over the heels. Without a known marker set,
+/// the axis along which the markers spread further, which the arms of a T-pose can mislead.
 FileAxes GuessAxes(const MarkerTracks& tracks);
 
 /// p_W of a place in the file's axes, and of a whole set of tracks.

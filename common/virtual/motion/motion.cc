@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -90,12 +91,6 @@ Result<Layout> ToLayout(const C3dReader& reader, const C3dParameters& parameters
                  " bytes are announced: the file ends before");
   }
   return layout;
-}
-
-double UnitOf(const std::string& text) {
-  if (text == "m") return 1;
-  if (text == "cm") return 1e-2;
-  return text == "mm" || text.empty() ? 1e-3 : 0;
 }
 
 /// A place and whether it was seen: the fourth word is negative where not.
@@ -227,8 +222,11 @@ Result<C3d> ParseC3d(std::span<const std::uint8_t> bytes, const std::string& fil
   if (!parameters) return parameters.error();
   const auto layout = ToLayout(reader, *parameters, bytes.size(), file);
   if (!layout) return layout.error();
-  const double unit_m = UnitOf(parameters->Text("POINT:UNITS"));
-  if (unit_m == 0) return fault("expected POINT:UNITS m, cm or mm");
+  const std::string unit = parameters->Text("POINT:UNITS");
+  const double unit_m = unit.empty() ? 1e-3 : MetresOf(unit);
+  if (unit_m == 0) {
+    return fault("expected POINT:UNITS m, cm or mm, found " + text::Quoted(unit));
+  }
 
   C3d c3d;
   c3d.x_screen = parameters->Text("POINT:X_SCREEN");
@@ -263,6 +261,14 @@ Eigen::Matrix3d Axes(const Eigen::Matrix<double, 3, 4>& corners) {
   return axes;
 }
 
+/// "Nm", "N.m", "N*m", "NM", not "Nmm".
+bool IsNewtonMetre(const std::string& unit) {
+  std::string letters;
+  std::copy_if(unit.begin(), unit.end(), std::back_inserter(letters),
+               [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; });
+  return text::EqualsIgnoringCase(letters, "nm");
+}
+
 }  // namespace
 
 Result<GroundForces> ToGroundForces(const C3d& c3d, const std::string& file) {
@@ -290,7 +296,7 @@ Result<GroundForces> ToGroundForces(const C3d& c3d, const std::string& file) {
     const auto channel = [&](std::size_t k) { return c3d.analog.row(plate.channels[k]); };
     // Moments come in the unit of the points, mostly N mm.
     const std::string& unit = c3d.analog_units[static_cast<std::size_t>(plate.channels[3])];
-    const double moment_scale = unit == "Nm" || unit == "N.m" || unit == "N*m" ? 1 : 1e-3;
+    const double moment_scale = IsNewtonMetre(unit) ? 1 : 1e-3;
     // Some laboratories store the force on the plate, some that on the person. A plate is only ever
     // pressed down, and its z points down: on the person the sum is negative.
     const double sign = channel(2).sum() > 0 ? -1 : 1;

@@ -354,9 +354,7 @@ Result<Head> ParseHead(text::Lines& lines) {
   for (std::size_t i = 0; i < keys.size() && i < values.size(); ++i) {
     if (keys[i] == "DataRate") head.rate_hz = text::ToNumber(values[i]).value_or(0);
     if (keys[i] == "NumFrames") head.frames = text::ToNumber(values[i]).value_or(0);
-    if (keys[i] == "Units") {
-      head.unit_m = values[i] == "m" ? 1 : values[i] == "cm" ? 1e-2 : values[i] == "mm" ? 1e-3 : 0;
-    }
+    if (keys[i] == "Units") head.unit_m = MetresOf(values[i]);
   }
   if (!IsRate(head.rate_hz)) return lines.Fault("expected DataRate from 0.1 to 100000 Hz");
   if (head.unit_m == 0) return lines.Fault("expected Units m, cm or mm");
@@ -381,6 +379,21 @@ constexpr const char* kNotNext =
     "or DataRate is wrong";
 
 }  // namespace
+
+double MetresOf(std::string_view unit) {
+  constexpr std::array<std::pair<double, std::string_view>, 3> kNames{
+      {{1, "m meter metre"},
+       {1e-2, "cm centimeter centimetre"},
+       {1e-3, "mm millimeter millimetre"}}};
+  std::string name = text::Lower(std::string(text::Trim(unit)));
+  if (name.size() > 2 && name.back() == 's') name.pop_back();
+  for (const auto& [metres, names] : kNames) {
+    for (const std::string_view one : text::SplitAtBlanks(names)) {
+      if (name == one) return metres;
+    }
+  }
+  return 0;
+}
 
 Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
   text::Lines lines(text, file);

@@ -73,6 +73,10 @@ inline std::optional<double> ToValue(std::string_view word) {
   return number && std::abs(*number) <= kGreatestValue ? number : std::nullopt;
 }
 
+/// Length of a file's unit, m: m, cm or mm, or their English names, singular or plural, in capitals
+/// or not. 0 where it is none of them.
+double MetresOf(std::string_view unit);
+
 // TRC: marker places as text, a row a frame (Motion Analysis; OpenSim).
 
 /// Reads one in its own axes (OpenSim's: FileAxes::kYUp). A marker whose three fields are empty,

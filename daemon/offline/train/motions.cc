@@ -100,6 +100,7 @@ Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
   }
   const Result<motion_files::LoadedMotion> read = motion_files::LoadMotion(file, load);
   if (!read) return read.error();
+  if (!read->height_m && !read->note.empty()) log::Info(file + ": " + read->note);
   const Result<motion::Motion> motion = motion::WithLandmarksOnly(read->motion);
   if (!motion) return InvalidData(file + ": " + motion.error().message);
   if (motion->frames() < kFewestFrames) {
@@ -570,6 +571,7 @@ class LeaveOneOut {
     for (std::size_t i = 0; i < takes_.size(); ++i) {
       const PoseTake& take = takes_[i];
       if (take.clip->subject != person || take.mirrored || !StaysInPlace(*take.clip)) continue;
+      if (postures_[i].poses.empty()) continue;  // Its T-pose never stands still.
       const auto tally = ScoreTake(take, models, more);
       if (!tally) return tally.error();
       sum.Add(*tally);

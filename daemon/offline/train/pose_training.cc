@@ -476,6 +476,9 @@ Result<learning::PoseExamples> Examples(const TrainingSet& set, const model::Mod
     }
     if (take.mirrored) log::Info("simulated " + take.clip->name);
   }
+  if (examples.poses.empty() && set.own.empty()) {
+    return InvalidData("no clip whose T-pose stands still on the boards: nothing to train on");
+  }
   for (const OwnRecording& own : set.own) {
     const auto added = AddOwn(own, *models, cues, set.weight,
                               seed + 2 * static_cast<std::uint64_t>(piece), piece, examples);
@@ -618,7 +621,11 @@ Result<void> AddExamples(const PoseTake& take, const reconstruction::Models& mod
     const auto& output = made->Advance(run->frames[i].inputs);
     if (i < first) continue;
     if (!output.calibrated) {
-      return InvalidData(take.clip->name + ": its T-pose never stood still");
+      if (cues == learning::PoseCues::kPosture) {
+        log::Warning(take.clip->name + (take.mirrored ? ", mirrored" : "") +
+                     ": its T-pose never stands still on the boards: not trained on");
+      }
+      return {};
     }
     const int piece = take.piece + static_cast<int>((i - first) / piece_frames);
     const int fold = take.by_person ? take.person : piece % learning::kFolds;

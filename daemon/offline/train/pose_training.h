@@ -91,7 +91,8 @@ Result<pose_run::PoseRun> SimulateTake(const PoseTake& take,
                                        pose_run::HeadDevice head = pose_run::HeadDevice::kNone,
                                        bool belt = false);
 
-/// Appends the take's frames.
+/// Appends the take's frames. A take whose T-pose never stands still on the boards adds none; the
+/// first pass, that of the posture, warns of it by its name.
 Result<void> AddExamples(const PoseTake& take, const reconstruction::Models& models,
                          learning::PoseCues cues, learning::PoseExamples& examples);
 

@@ -213,6 +213,19 @@ class Train(unittest.TestCase):
         self.refused(1, "cannot list", "com", "--motions", folder / "none", "--out", self.out)
         self.assertFalse(self.out.exists())
 
+    def test_a_clip_without_a_still_t_pose_is_left_out_by_name(self):
+        folder = self.motions()
+        text = (folder / "2_01.bvh").read_text()
+        # Feet that touch, and a long arm to the left: the right foot carries too little in the T-pose.
+        for old, new in (("9 -5 0", "3 -5 0"), (" 28 0 0", " 125 0 0"), (" 26 0 0", " 125 0 0")):
+            text = text.replace(old, new)
+        (folder / "1_03.bvh").write_text(text)
+        result = run("pose", "--motions", folder, "--out", self.out, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1_03.bvh: its T-pose never stands still on the boards", result.stderr)
+        self.assertNotIn("1_02.bvh: its T-pose", result.stderr)
+        self.assertTrue(self.out.exists())
+
     def test_people_are_each_judged_by_a_model_without_them(self):
         folder = self.motions()
         result = run("people", "--motions", folder, "--seed", 1, "--json")

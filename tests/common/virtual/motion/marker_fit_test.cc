@@ -162,6 +162,36 @@ TEST(MarkerSets, AnUnknownSetIsListedWithWhatTheNearestOneNeeds) {
   }
 }
 
+/// The made person's arms are spread further than he is high: in a static trial the widest extent
+/// is not the height.
+TEST(MarkerSets, TheShouldersAreOverTheHeelsWhicheverAxisIsUp) {
+  Made made;
+  for (std::size_t i = 0; i < made.tracks.p.size(); ++i) {
+    if (made.tracks.names[i].find("wrist") == std::string::npos) continue;
+    made.tracks.p[i].row(1) *= 3;
+  }
+  EXPECT_EQ(GuessAxes(made.tracks), FileAxes::kZUp);
+  MarkerTracks turned = made.tracks;  // y up, x ahead, z right: as OpenSim has it.
+  for (Eigen::Matrix3Xd& p : turned.p) {
+    const Eigen::Matrix3Xd before = p;
+    p.row(1) = before.row(2);
+    p.row(2) = -before.row(1);
+  }
+  EXPECT_EQ(GuessAxes(turned), FileAxes::kYUp);
+  EXPECT_LT((ToWorld(FileAxes::kYUp, turned).p[0] - made.tracks.p[0]).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(MarkerFit, AMarkerThatJumpsByFiveMetresIsNamed) {
+  Made made;
+  const int knee = FindMarker(made.tracks, "L_knee");
+  made.tracks.p[static_cast<std::size_t>(knee)](0, 20) += 5;  // It moves by itself, too.
+  const auto fit = FitMarkers(made.tracks);
+  ASSERT_FALSE(fit.ok());
+  EXPECT_EQ(fit.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(fit.error().message,
+              HasSubstr("marker L_knee moves by 5.0 m between frames 20 and 21"));
+}
+
 TEST(MarkerFit, FindsLengthsAndMotionOfAMadePerson) {
   const Made made;
   const auto fit = FitMarkers(made.tracks);

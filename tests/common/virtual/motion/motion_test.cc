@@ -177,6 +177,29 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryC3d,
                                                           Processor::kMips),
                                           testing::Bool()));
 
+TEST(C3d, UnitsAreReadHoweverTheyAreSpelt) {
+  const Bytes file = Example(Processor::kIntel, true);
+  const std::string word = "mm";
+  const auto units = std::search(file.begin(), file.end(), word.begin(), word.end());
+  ASSERT_NE(units, file.end());
+  const struct {
+    const char* unit;
+    double x_m;  // Place of the first point: 1000 of them.
+  } kRows[] = {{"MM", 1}, {"Mm", 1}, {"cm", 10}, {"CM", 10}, {"m ", 1000}, {"M ", 1000}};
+  for (const auto& row : kRows) {
+    Bytes spelt = file;
+    std::copy_n(row.unit, 2, spelt.begin() + (units - file.begin()));
+    const auto read = ParseC3d(spelt, "x.c3d");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_NEAR(read->points.p[0](0, 0), row.x_m, 1e-6 * row.x_m) << row.unit;
+  }
+  for (const char* name : {"Millimeters", "millimetre", " MILLIMETRES "}) {
+    EXPECT_EQ(MetresOf(name), 1e-3) << name;
+  }
+  for (const char* name : {"meter", "Metres", "m"}) EXPECT_EQ(MetresOf(name), 1) << name;
+  for (const char* name : {"", "s", "ms", "km", "feet"}) EXPECT_EQ(MetresOf(name), 0) << name;
+}
+
 TEST(C3d, EveryCutOfAFileIsRefused) {
   const Bytes file = Example(Processor::kIntel, true);
   for (std::size_t length = 0; length < file.size(); length += 7) {
