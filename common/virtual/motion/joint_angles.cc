@@ -1,6 +1,7 @@
 #include "common/virtual/motion/joint_angles.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -162,6 +163,15 @@ void WithinATurn(Eigen::VectorXd& angles_rad) {
   }
 }
 
+/// Takes the one of the two triples of a rotation whose second angle is within a quarter turn: no
+/// thigh is spread further. In a deep squat with wide knees the nearest one to the frame before
+/// may be the other one, and stays it when the person stands up again.
+void WithinAQuarter(Eigen::VectorXd& angles_rad) {
+  if (std::abs(angles_rad(1)) <= kPi / 2) return;
+  angles_rad(1) = std::copysign(kPi, angles_rad(1)) - angles_rad(1);
+  for (const Eigen::Index i : {0, 2}) angles_rad(i) -= std::copysign(kPi, angles_rad(i));
+}
+
 /// A millionth of a degree or metre.
 double Rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
@@ -192,6 +202,7 @@ class AngleReader {
       if (near != nullptr) angles_rad_[i] = near->angles_rad_[i];
       body::SetJointRotation(joint_, Between(at_, segments_, all_[i].parent, all_[i].child),
                              angles_rad_[i]);
+      if (all_[i].child < kUpperArm) WithinAQuarter(angles_rad_[i]);
       if (near == nullptr && all_[i].parent != kGround) WithinATurn(angles_rad_[i]);
     }
   }
@@ -254,6 +265,153 @@ Result<motion::Table> JointAngles(const motion::Motion& motion, const motion::Mo
     }
   }
   return table;
+}
+
+namespace {
+
+constexpr double kStillS = 0.3;
+constexpr double kUprightDeg = 40, kStillDeg = 4;
+
+/// Columns of the coordinates of pelvis, trunk and legs in a table; -1 for those not written.
+struct LegColumns {
+  std::vector<Coordinates> joints;
+  std::vector<std::array<int, 3>> columns;  ///< One for each joint.
+  double to_rad = 1;
+
+  static Result<LegColumns> Of(const motion::Table& table) {
+    LegColumns found;
+    found.to_rad = table.in_degrees ? kPi / 180 : 1;
+    for (Coordinates& joint : AllCoordinates()) {
+      if (joint.child >= kUpperArm) continue;
+      std::array<int, 3> columns{-1, -1, -1};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (joint.names[axis].empty()) continue;
+        columns[axis] = motion::FindColumn(table, joint.names[axis]);
+        if (columns[axis] < 0) return InvalidData("no column " + joint.names[axis]);
+      }
+      found.joints.push_back(std::move(joint));
+      found.columns.push_back(columns);
+    }
+    return found;
+  }
+
+  /// Orientations of the segments in the ground's frame.
+  void Orient(const motion::Table& table, Eigen::Index row,
+              std::array<Matrix3d, kUpperArm>& R_GA) const {
+    const body::Joint opensim = OpenSimJoint();
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      Eigen::VectorXd angles = Eigen::VectorXd::Zero(3);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<Eigen::Index>(axis);
+        if (columns[i][axis] < 0) continue;
+        angles(at) = joints[i].signs(at) * to_rad * table.values(row, columns[i][axis]);
+      }
+      angles(0) *= -1;  // OpenSim's z is W's -y.
+      const Matrix3d R = body::JointRotation(opensim, angles);
+      const int parent = joints[i].parent;
+      R_GA[static_cast<std::size_t>(joints[i].child)] =
+          parent == kGround ? R : Matrix3d(R_GA[static_cast<std::size_t>(parent)] * R);
+    }
+  }
+};
+
+/// The rotation nearest to a sum of rotations.
+Matrix3d MeanRotation(const Matrix3d& sum) {
+  const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
+}  // namespace
+
+std::vector<Eigen::Index> FindStanding(const motion::Table& angles, Eigen::Index from) {
+  std::vector<int> bends, others;
+  for (const char* name : {"hip_flexion_l", "hip_flexion_r", "knee_angle_l", "knee_angle_r"}) {
+    bends.push_back(motion::FindColumn(angles, name));
+  }
+  others = bends;
+  for (const char* name : {"time", "pelvis_tilt", "lumbar_extension"}) {
+    others.push_back(motion::FindColumn(angles, name));
+  }
+  const Eigen::Index rows = angles.values.rows();
+  if (std::find(others.begin(), others.end(), -1) != others.end() || rows < 2) return {};
+  const int time = others[bends.size()];
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(bends.size()));
+  const double to_deg = angles.in_degrees ? 1 : 180 / kPi;
+  const double step_s =
+      (angles.values(rows - 1, time) - angles.values(0, time)) / static_cast<double>(rows - 1);
+  const Eigen::Index least =
+      std::max<Eigen::Index>(1, std::lround(kStillS / std::max(step_s, 1e-6)));
+  const auto still = [&](Eigen::Index first) {  // For kStillS from there on.
+    for (const int column : others) {
+      const auto part = to_deg * angles.values.col(column).segment(first, least).array();
+      if (part.maxCoeff() - part.minCoeff() > kStillDeg) return false;
+      const bool bent = std::find(bends.begin(), bends.end(), column) != bends.end();
+      if (bent && part.abs().maxCoeff() > kUprightDeg) return false;
+    }
+    return true;
+  };
+  std::vector<Eigen::Index> standing;
+  for (Eigen::Index first = from; first + least <= rows; ++first) {
+    if (!still(first)) continue;
+    const Eigen::Index next = standing.empty() ? first : std::max(first, standing.back() + 1);
+    for (Eigen::Index row = next; row < first + least; ++row) standing.push_back(row);
+  }
+  return standing;
+}
+
+Result<motion::Table> SinceStanding(const motion::Table& angles,
+                                    const std::vector<Eigen::Index>& standing) {
+  FOOTING_CHECK(!standing.empty());
+  const auto from = LegColumns::Of(angles);
+  if (!from) return from.error();
+  std::array<Matrix3d, kUpperArm> R_GA, upright;
+  upright.fill(Matrix3d::Zero());
+  for (const Eigen::Index row : standing) {
+    from->Orient(angles, row, R_GA);
+    for (std::size_t part = 0; part < R_GA.size(); ++part) upright[part] += R_GA[part];
+  }
+  const Vector3d ahead = MeanRotation(upright[kPelvis]).col(0);
+  const Matrix3d heading = body::AxisRotation(body::Axis::kZ, std::atan2(ahead.y(), ahead.x()));
+  for (Matrix3d& R : upright) R = MeanRotation(R).transpose() * heading;
+  motion::Table out;
+  out.in_degrees = true;
+  out.columns = {"time"};
+  for (const Coordinates& joint : from->joints) {
+    for (const std::string& name : joint.names) {
+      if (!name.empty()) out.columns.push_back(name);
+    }
+  }
+  out.values.setZero(angles.values.rows(), static_cast<Eigen::Index>(out.columns.size()));
+  const body::Joint opensim = OpenSimJoint();
+  std::vector<Eigen::VectorXd> angles_rad(from->joints.size(), Eigen::VectorXd::Zero(3));
+  for (Eigen::Index row = 0; row < angles.values.rows(); ++row) {
+    from->Orient(angles, row, R_GA);
+    for (std::size_t part = 0; part < R_GA.size(); ++part) R_GA[part] *= upright[part];
+    Eigen::Index column = 0;
+    out.values(row, column++) = angles.values(row, 0);
+    for (std::size_t i = 0; i < from->joints.size(); ++i) {
+      const Coordinates& joint = from->joints[i];
+      const Matrix3d& parent =
+          joint.parent == kGround ? heading : R_GA[static_cast<std::size_t>(joint.parent)];
+      body::SetJointRotation(
+          opensim, parent.transpose() * R_GA[static_cast<std::size_t>(joint.child)], angles_rad[i]);
+      WithinAQuarter(angles_rad[i]);
+      const Vector3d opensim_rad(-angles_rad[i](0), angles_rad[i](1), angles_rad[i](2));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (joint.names[axis].empty()) continue;
+        const auto at = static_cast<Eigen::Index>(axis);
+        out.values(row, column++) = Rounded(RadiansToDegrees(joint.signs(at) * opensim_rad(at)));
+      }
+    }
+  }
+  return out;
+}
+
+bool IsKnown(const motion::Table& angles, const std::string& column, Eigen::Index row) {
+  if (column.rfind("hip_rotation", 0) != 0) return true;
+  const int knee = motion::FindColumn(angles, "knee_angle" + column.substr(column.size() - 2));
+  const double to_deg = angles.in_degrees ? 1 : 180 / kPi;
+  return knee >= 0 && to_deg * angles.values(row, knee) >= kStraightKneeDeg;
 }
 
 namespace {

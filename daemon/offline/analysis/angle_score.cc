@@ -19,8 +19,6 @@ namespace {
 using body::Landmark;
 using nlohmann::ordered_json;
 
-constexpr double kRateHz = 100;  // Arbitrary: errors do not depend on it.
-
 /// Which frame an error belongs to.
 struct FrameKind {
   bool valid = false, bent = false;
@@ -40,6 +38,7 @@ class Errors {
     if (upright_.count > 0) json["rmse_upright_deg"] = upright_.Rms();
     if (bent_.count > 0) json["rmse_bent_deg"] = bent_.Rms();
   }
+  double count() const { return all_.count; }
   double mean_deg() const { return all_.count > 0 ? all_.sum / all_.count : 0; }
 
  private:
@@ -67,12 +66,14 @@ struct Range {
 struct Coordinate {
   Errors errors;
   Range estimated, truth;
+  double frames = 0;  ///< Known or not, of both sides.
 };
 
-motion::Motion MotionOf(const body::Body& body, const std::vector<Eigen::VectorXd>& q) {
+motion::Motion MotionOf(const body::Body& body, const std::vector<Eigen::VectorXd>& q,
+                        double rate_hz) {
   motion::Motion motion;
   motion.skeleton = body.skeleton;
-  motion.rate_hz = kRateHz;
+  motion.rate_hz = rate_hz;
   motion.q.resize(body.skeleton.dof, static_cast<Eigen::Index>(q.size()));
   for (std::size_t i = 0; i < q.size(); ++i) motion.q.col(static_cast<Eigen::Index>(i)) = q[i];
   return motion;
@@ -110,20 +111,32 @@ constexpr LinkKind kLinks[] = {
     {"thigh", Landmark::kLeftHip},     {"shank", Landmark::kLeftKnee},
     {"foot", Landmark::kLeftAnkle}};
 
-/// Every coordinate that is an angle, in the order of the columns.
+/// NameOf(), without the angles of the arms, which do not change from standing.
+std::optional<std::string> NameOfTrunkOrLeg(const std::string& column) {
+  const bool arm = column.rfind("arm_", 0) == 0 || column.rfind("elbow_", 0) == 0;
+  return arm ? std::nullopt : NameOf(column);
+}
+
+/// Every coordinate that is an angle, in the order of the columns; `since_standing`: those of trunk
+/// and legs alone, in the frames in which they are known.
 void WriteCoordinates(const motion::Table& estimated, const motion::Table& truth,
-                      const std::vector<FrameKind>& kinds, ordered_json& json) {
+                      const std::vector<FrameKind>& kinds, bool since_standing,
+                      ordered_json& json) {
   std::map<std::string, Coordinate> coordinates;
   std::vector<std::string> order;
   for (std::size_t column = 0; column < estimated.columns.size(); ++column) {
-    const auto name = NameOf(estimated.columns[column]);
-    if (!name) continue;
+    const std::string& label = estimated.columns[column];
+    const auto name = since_standing ? NameOfTrunkOrLeg(label) : NameOf(label);
+    if (!name || motion::FindColumn(truth, label) < 0) continue;
     if (!coordinates.contains(*name)) order.push_back(*name);
     Coordinate& coordinate = coordinates[*name];
     const auto index = static_cast<Eigen::Index>(column);
+    const int true_index = motion::FindColumn(truth, label);
     for (Eigen::Index row = 0; row < estimated.values.rows(); ++row) {
+      ++coordinate.frames;
+      if (since_standing && !joint_angles::IsKnown(estimated, label, row)) continue;
       const double is_deg = estimated.values(row, index);
-      const double should_deg = truth.values(row, index);
+      const double should_deg = truth.values(row, true_index);
       coordinate.errors.Add(std::remainder(is_deg - should_deg, 360.0),
                             kinds[static_cast<std::size_t>(row)]);
       coordinate.estimated.Add(is_deg);
@@ -133,6 +146,9 @@ void WriteCoordinates(const motion::Table& estimated, const motion::Table& truth
   for (const std::string& name : order) {
     const Coordinate& coordinate = coordinates.at(name);
     ordered_json& entry = json[name];
+    const double known = coordinate.errors.count();
+    if (known < coordinate.frames) entry["known_share"] = known / coordinate.frames;
+    if (known == 0) continue;
     coordinate.errors.WriteTo(entry);
     entry["mean_error_deg"] = coordinate.errors.mean_deg();
     entry["range_deg"] = coordinate.estimated.most - coordinate.estimated.least;
@@ -146,6 +162,21 @@ double RotationDeg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 
 }  // namespace
 
+Result<ordered_json> CompareAngles(const motion::Table& estimated, const motion::Table& truth,
+                                   const std::vector<bool>& valid, Eigen::Index first) {
+  ordered_json json;
+  const std::vector<FrameKind> kinds = KindsOf(estimated, valid);
+  WriteCoordinates(estimated, truth, kinds, false, json["joint_angles"]);
+  const auto standing = joint_angles::FindStanding(truth, first);
+  if (standing.empty()) return json;
+  const auto change = joint_angles::SinceStanding(estimated, standing);
+  if (!change) return change.error();
+  const auto true_change = joint_angles::SinceStanding(truth, standing);
+  if (!true_change) return true_change.error();
+  WriteCoordinates(*change, *true_change, kinds, true, json["angles_since_standing"]);
+  return json;
+}
+
 void AngleScore::Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q, bool valid) {
   q_.push_back(q);
   true_q_.push_back(true_q);
@@ -154,13 +185,15 @@ void AngleScore::Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q, bo
 
 Result<void> AngleScore::WriteTo(ordered_json& json) const {
   if (q_.empty()) return {};
-  const motion::Motion estimate = MotionOf(body_, q_);
+  const motion::Motion estimate = MotionOf(body_, q_, rate_hz_);
   const auto estimated = joint_angles::JointAngles(estimate);
   if (!estimated) return estimated.error();
-  const auto truth = joint_angles::JointAngles(MotionOf(body_, true_q_), &estimate);
+  const auto truth = joint_angles::JointAngles(MotionOf(body_, true_q_, rate_hz_), &estimate);
   if (!truth) return truth.error();
+  const auto compared = CompareAngles(*estimated, *truth, valid_, first_);
+  if (!compared) return compared.error();
+  json.update(*compared);
   const std::vector<FrameKind> kinds = KindsOf(*estimated, valid_);
-  WriteCoordinates(*estimated, *truth, kinds, json["joint_angles"]);
   std::array<Errors, std::size(kLinks)> links;
   body::Kinematics at(body_.skeleton), true_at(body_.skeleton);
   for (std::size_t i = 0; i < q_.size(); ++i) {

@@ -15,15 +15,25 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/body/landmarks.h"
+#include "common/virtual/motion/table.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 
 namespace footing::eval {
+
+/// Two tables of joint angles, row by row: {joint_angles: {NAME: {...}}, angles_since_standing:
+/// {...}} as AngleScore has them, of the coordinates that are in both. `valid`: one for each row.
+/// The frames in which the person stands are looked for in `truth`, from row `first` on.
+Result<nlohmann::ordered_json> CompareAngles(const motion::Table& estimated,
+                                             const motion::Table& truth,
+                                             const std::vector<bool>& valid, Eigen::Index first);
 
 /// Joint angles and orientations of links against the truth, as the exports have them.
 class AngleScore {
  public:
   /// `body` must outlive it.
-  explicit AngleScore(const body::Body& body) : body_(body) {}
+  /// The frames from `first` on are of the clip itself, with its own way of standing.
+  AngleScore(const body::Body& body, double rate_hz, Eigen::Index first)
+      : body_(body), rate_hz_(rate_hz), first_(first) {}
 
   void Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q, bool valid);
 
@@ -33,6 +43,11 @@ class AngleScore {
   /// estimate and truth in W. RMS errors are of all frames, of the valid ones, and of those in
   /// which a knee is reported as bent by kBentDeg or more (all: bent, and less: upright). A share
   /// without frames has no field.
+  ///
+  /// The field angles_since_standing has the same of pelvis, trunk and legs as the change from the
+  /// person's own standing (joint_angles::SinceStanding), of estimate and truth each from the
+  /// frames in which the true person stands; absent where it never does. The rotation of a hip is
+  /// that of the frames in which it is known (joint_angles::IsKnown), known_share of all.
   Result<void> WriteTo(nlohmann::ordered_json& json) const;
 
   /// A frame is bent when the mean flexion of both knees exceeds this, degrees.
@@ -40,6 +55,8 @@ class AngleScore {
 
  private:
   const body::Body& body_;
+  double rate_hz_;
+  Eigen::Index first_;
   std::vector<Eigen::VectorXd> q_, true_q_;
   std::vector<bool> valid_;
 };

@@ -65,6 +65,13 @@ class SmoothnessScore {
   std::array<Roughness, 2> elbow_, true_elbow_;
 };
 
+/// The first frame of the clip, behind the T-pose that was put before it.
+std::size_t ClipBegins(const pose_run::PoseRun& run) {
+  const auto begin =
+      static_cast<std::size_t>(std::lround((pose_run::kStandS + pose_run::kLeaveS) * run.rate_hz));
+  return std::max(begin, run.judged_from);
+}
+
 /// All outputs of a trial against the truth.
 class TrialScore {
  public:
@@ -72,7 +79,8 @@ class TrialScore {
       : run_(run),
         lag_(lag),
         pose_(run.body),
-        angles_(run.body),
+        angles_(run.body, run.rate_hz,
+                static_cast<Eigen::Index>(ClipBegins(run) - run.judged_from + lag)),
         feet_(run, lag),
         breakdown_(run) {}
 

@@ -78,6 +78,15 @@ class Plates(unittest.TestCase):
         squats = {row["activity"]: row for row in report["by_activity"]}
         self.assertGreater(squats["bent"]["frames"] + squats.get("crouched", {"frames": 0})["frames"], 200)
         self.assertEqual(report["lift_offs"], 0)
+        # The change from the person's own standing; nothing of the arms, which have no such change.
+        since = report["angles_since_standing"]
+        self.assertNotIn("arm_flex", since)
+        self.assertLess(since["hip_adduction"]["rmse_deg"], 8)
+        self.assertLess(since["hip_rotation"]["known_share"], 1)
+        self.assertNotIn("known_share", since["knee_angle"])
+        belt, _ = self.report(*trial("squats1"), *plates("squats1"), "--belt")
+        self.assertLess(belt["angles_since_standing"]["pelvis_tilt"]["rmse_deg"], 5)
+        self.assertLess(belt["angles_since_standing"]["pelvis_tilt"]["rmse_deg"], since["pelvis_tilt"]["rmse_deg"] / 3)
 
     def test_are_put_under_the_body_by_standing_still(self):
         squats = (*trial("squats1"), *plates("squats1"))

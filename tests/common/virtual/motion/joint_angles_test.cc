@@ -236,6 +236,138 @@ TEST_F(JointAnglesTest, NearAnotherMotionTheSamePoseHasTheSameAngles) {
   EXPECT_GT((alone->values.row(frames - 1) - last).cwiseAbs().maxCoeff(), 300);
 }
 
+/// Stands for a second, then bends hips, knees and trunk, spreads the legs and turns them inwards.
+class SinceStandingTest : public JointAnglesTest {
+ protected:
+  static constexpr int kStands = 100, kFrames = 200;
+
+  SinceStandingTest() { Squat(Matrix3d::Identity(), Matrix3d::Identity()); }
+
+  /// With a pelvis and thighs whose own frames are turned by these: another laboratory's.
+  void Squat(const Matrix3d& of_pelvis, const Matrix3d& of_thigh) {
+    motion_.q.setZero(motion_.skeleton.dof, kFrames);
+    for (int i = 0; i < kFrames; ++i) {
+      const double bend = i < kStands ? 0 : 0.01 * (i - kStands);
+      if (i > 0) motion_.q.col(i) = motion_.q.col(i - 1);
+      motion_.q(2, i) = 1 - 0.3 * bend;
+      const Matrix3d pelvis = AxisRotation(Axis::kZ, 0.4) * AxisRotation(Axis::kY, 0.5 * bend);
+      Set(i, "root", pelvis * of_pelvis);
+      Set(i, "thorax", of_pelvis.transpose() * AxisRotation(Axis::kY, 0.2 * bend));
+      for (const std::string s : {"l", "r"}) {
+        const double out = s == "l" ? 1 : -1;
+        const Matrix3d thigh = AxisRotation(Axis::kY, -1.4 * bend) *
+                               AxisRotation(Axis::kX, out * 0.3 * bend) *
+                               AxisRotation(Axis::kZ, -out * 0.2 * bend);
+        Set(i, s + "femur", of_pelvis.transpose() * thigh * of_thigh * Upright(s));
+        Set(i, s + "tibia", OfLeg(s, of_thigh.transpose() * AxisRotation(Axis::kY, 1.6 * bend)));
+      }
+    }
+  }
+};
+
+TEST_F(SinceStandingTest, AnotherFrameOfPelvisAndThighMakesNoDifference) {
+  const motion::Table plain = Angles();
+  const auto standing = FindStanding(plain);
+  ASSERT_FALSE(standing.empty());
+  EXPECT_EQ(standing.front(), 0);
+  // Then no angle has changed by 4 degrees yet: the knee does in 4.4 frames.
+  EXPECT_NEAR(static_cast<double>(standing.back()), kStands + 4, 1);
+  std::vector<Eigen::Index> upright(standing.begin(), standing.begin() + kStands);
+  const auto change = SinceStanding(plain, upright);
+  ASSERT_TRUE(change.ok()) << change.error().message;
+  const int last = kFrames - 1;
+  const double bend = RadiansToDegrees(0.01 * (last - kStands));
+  EXPECT_NEAR(At(*change, "pelvis_tilt", last), -0.5 * bend, 1e-4);  // Forwards.
+  EXPECT_NEAR(At(*change, "pelvis_rotation", last), 0, 1e-4);        // Its heading is its own.
+  EXPECT_NEAR(At(*change, "lumbar_extension", last), -0.2 * bend, 1e-4);
+  for (const std::string s : {"_l", "_r"}) {
+    EXPECT_NEAR(At(*change, "hip_flexion" + s, last), 1.4 * bend, 1e-4);
+    EXPECT_NEAR(At(*change, "hip_adduction" + s, last), -0.3 * bend, 1e-4);
+    EXPECT_NEAR(At(*change, "hip_rotation" + s, last), 0.2 * bend, 1e-4);
+    EXPECT_NEAR(At(*change, "knee_angle" + s, last), 1.6 * bend, 1e-4);
+  }
+  EXPECT_EQ(motion::FindColumn(*change, "arm_flex_r"), -1);
+
+  Squat(AxisRotation(Axis::kY, 0.3), AxisRotation(Axis::kZ, 0.25));
+  const motion::Table turned = Angles();
+  EXPECT_GT(std::abs(At(turned, "pelvis_tilt") - At(plain, "pelvis_tilt")), 15);
+  EXPECT_GT(std::abs(At(turned, "hip_flexion_r") - At(plain, "hip_flexion_r")), 15);
+  EXPECT_GT(std::abs(At(turned, "hip_rotation_r") - At(plain, "hip_rotation_r")), 10);
+  const auto of_turned = SinceStanding(turned, upright);
+  ASSERT_TRUE(of_turned.ok()) << of_turned.error().message;
+  for (std::size_t i = 0; i < change->columns.size(); ++i) {
+    const std::string& column = change->columns[i];
+    // The thigh's frame is not the knee's: a hinge about another axis has another flexion.
+    if (column.rfind("knee", 0) == 0 || column.rfind("ankle", 0) == 0) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    EXPECT_LT((change->values.col(at) - of_turned->values.col(at)).cwiseAbs().maxCoeff(), 1e-3)
+        << column;
+  }
+}
+
+TEST_F(SinceStandingTest, StandingIsLookedForWhereItIsAskedForAndIsNotASquat) {
+  const motion::Table table = Angles();
+  EXPECT_EQ(FindStanding(table, 40).front(), 40);
+  EXPECT_TRUE(FindStanding(table, kStands + 5).empty());
+  motion::Table crouched = table;
+  const auto knee = motion::FindColumn(table, "knee_angle_r");
+  crouched.values.col(knee).array() += 45;
+  EXPECT_TRUE(FindStanding(crouched).empty());
+}
+
+TEST_F(SinceStandingTest, TheTurnOfAStraightLegIsNotKnown) {
+  const motion::Table table = Angles();
+  EXPECT_FALSE(IsKnown(table, "hip_rotation_l", 0));
+  EXPECT_TRUE(IsKnown(table, "hip_rotation_l", kFrames - 1));
+  EXPECT_TRUE(IsKnown(table, "hip_flexion_l", 0));
+  motion::Table radians = table;
+  radians.in_degrees = false;
+  radians.values *= kPi / 180;
+  EXPECT_FALSE(IsKnown(radians, "hip_rotation_r", 0));
+  EXPECT_TRUE(IsKnown(radians, "hip_rotation_r", kFrames - 1));
+}
+
+TEST_F(SinceStandingTest, ATableInRadiansIsReadAndOneWithoutALegIsRefused) {
+  motion::Table table = Angles();
+  const auto change = SinceStanding(table, {0, 1, 2});
+  table.in_degrees = false;
+  table.values.rightCols(table.values.cols() - 1) *= kPi / 180;
+  const auto of_radians = SinceStanding(table, {0, 1, 2});
+  ASSERT_TRUE(change.ok() && of_radians.ok());
+  EXPECT_LT((change->values - of_radians->values).cwiseAbs().maxCoeff(), 1e-4);
+  table.columns[static_cast<std::size_t>(motion::FindColumn(table, "hip_rotation_l"))] = "other";
+  const auto refused = SinceStanding(table, {0, 1, 2});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("hip_rotation_l"), std::string::npos);
+}
+
+/// Bends and spreads the thighs until they point sideways, and further, and stands up again.
+TEST_F(JointAnglesTest, ADeepSquatWithWideKneesEndsWhereItBegan) {
+  constexpr int kFrames = 200;
+  motion_.q.setZero(motion_.skeleton.dof, kFrames);
+  for (int i = 0; i < kFrames; ++i) {
+    const double depth = std::sin(kPi * i / (kFrames - 1));
+    if (i > 0) motion_.q.col(i) = motion_.q.col(i - 1);
+    for (const std::string s : {"l", "r"}) {
+      const double out = s == "l" ? 1 : -1;
+      Set(i, s + "femur",
+          AxisRotation(Axis::kZ, out * 0.3 * depth) * AxisRotation(Axis::kX, out * 1.8 * depth) *
+              AxisRotation(Axis::kY, -0.8 * depth) * Upright(s));
+    }
+  }
+  const motion::Table table = Angles();
+  for (const std::string s : {"_l", "_r"}) {
+    for (const char* angle : {"hip_flexion", "hip_adduction", "hip_rotation"}) {
+      EXPECT_NEAR(At(table, angle + s, kFrames - 1), 0, 1e-4) << angle << s;
+      const int column = motion::FindColumn(table, angle + s);
+      EXPECT_LE(table.values.col(column).cwiseAbs().maxCoeff(), 180) << angle << s;
+    }
+    const int spread = motion::FindColumn(table, "hip_adduction" + s);
+    EXPECT_LT(table.values.col(spread).minCoeff(), -60);
+    EXPECT_GE(table.values.col(spread).minCoeff(), -90);
+  }
+}
+
 TEST(JointAngles, ASkeletonWithoutLegsIsRefusedByName) {
   motion::Motion motion;
   body::Joint root;
