@@ -496,15 +496,15 @@ class FrameForces {
 
   /// A row a frame; without a measurement the force is 0. Counts the frames in which a board said
   /// nothing.
-  std::vector<FootForces> Rows(const Floor& floor, std::uint64_t& unmeasured) const {
-    std::vector<FootForces> rows(static_cast<std::size_t>(frames()));
+  std::vector<motion::FootForces> Rows(const Floor& floor, std::uint64_t& unmeasured) const {
+    std::vector<motion::FootForces> rows(static_cast<std::size_t>(frames()));
     for (Index frame = 0; frame < frames(); ++frame) {
       bool measured = true;
       for (const std::size_t side : {0, 1}) {
         const auto load = At(frame, side);
         measured = measured && (load || boards_.load_n[side].size() == 0);
         if (!load || load->load_n < kLeastN) continue;
-        FootForce& foot = rows[static_cast<std::size_t>(frame)][side];
+        motion::FootForce& foot = rows[static_cast<std::size_t>(frame)][side];
         foot.load_n = load->load_n;
         foot.cop_W.head<2>() = floor.turn * load->cop_W.head<2>() + floor.shift_m;
       }
@@ -529,14 +529,14 @@ class FrameForces {
   Index frames() const { return Clock().frames; }
 
   /// The load of one foot; nothing where its board says nothing or its COP is not known.
-  std::optional<FootForce> At(Index frame, std::size_t side) const {
+  std::optional<motion::FootForce> At(Index frame, std::size_t side) const {
     const double time_s = start_s() + static_cast<double>(frame) / rate_hz() + offset_s_;
     const double place = (time_s - boards_.total.start_s) * boards_.total.rate_hz;
     const VectorXd& load_n = boards_.load_n[side];
     if (!(place >= 0) || place >= static_cast<double>(load_n.size() - 1)) return std::nullopt;
     const auto i = static_cast<Index>(place);
     const double share = place - static_cast<double>(i);
-    FootForce force;
+    motion::FootForce force;
     force.load_n = (1 - share) * load_n(i) + share * load_n(i + 1);
     if (!std::isfinite(force.load_n)) return std::nullopt;
     force.cop_W.head<2>() =
@@ -567,15 +567,16 @@ Result<void> WriteForces(const AlignOptions& options, const BoardForces& boards,
   if (alignment.unmeasured_frames == alignment.frames) {
     return InvalidData("the boards measured nothing while " + options.with + " was recorded");
   }
-  motion::Table table = ForceTable(rows, frames.rate_hz());
+  motion::Table table = motion::ForceTable(rows, frames.rate_hz());
   table.values.col(0).array() += frames.start_s();
   const std::string name = std::filesystem::path(options.with).stem().string();
   table.name = name + "_grf.mot";
   if (const auto made = MakeFolder(options.out); !made) return made;
   const std::string note =
       std::string(kMissing) + (floor.rms_m ? "" : "; the places are in the boards' own frame");
-  for (const auto& [file, text] : {std::pair(table.name, WithNote(motion::WriteTable(table), note)),
-                                   std::pair(name + "_loads.xml", ExternalLoads(name))}) {
+  for (const auto& [file, text] :
+       {std::pair(table.name, motion::WithNote(motion::WriteTable(table), note)),
+        std::pair(name + "_loads.xml", motion::ExternalLoads(name))}) {
     const std::string path = options.out + "/" + file;
     auto out = recording::OutputFile::Create(path, options.replace);
     if (!out) return out.error();

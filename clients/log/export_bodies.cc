@@ -4,19 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "clients/log/biped_person.h"
 #include "clients/log/contents.h"
 #include "common/base/text.h"
 #include "common/body/angle_deviation.h"
-#include "common/body/kinematics.h"
 #include "common/body/skeleton.h"
 #include "common/recording/mcap_reader.h"
 #include "common/recording/recording_writer.h"
@@ -30,59 +26,6 @@
 #include "common/wire/wire.h"
 
 namespace footing::log_client {
-
-motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector<bool>& valid) {
-  motion::MarkerTracks tracks;
-  tracks.rate_hz = motion.rate_hz;
-  body::Kinematics at(motion.skeleton);
-  for (int i = 0; i < motion.skeleton.size(); ++i) {
-    tracks.names.push_back(motion.skeleton.joint(i).name);
-    tracks.p.emplace_back(3, motion.frames());
-  }
-  const Eigen::Vector3d unseen =
-      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
-    if (!valid[static_cast<std::size_t>(frame)]) {
-      for (Eigen::Matrix3Xd& track : tracks.p) track.col(frame) = unseen;
-      continue;
-    }
-    body::ComputeKinematics(motion.skeleton, motion.q.col(frame), at);
-    for (std::size_t i = 0; i < tracks.p.size(); ++i) {
-      const Eigen::Vector3d& p_W = at.p_WJ[i];
-      tracks.p[i].col(frame) << p_W.x(), p_W.z(), -p_W.y();
-    }
-  }
-  return tracks;
-}
-
-std::string WithNote(std::string table, const std::string& note) {
-  const std::size_t end = table.find("endheader\n");
-  FOOTING_CHECK(end != std::string::npos);
-  return table.insert(end, note + "\n");
-}
-
-/// Says to OpenSim's tools which columns of the forces act on which foot, at which point.
-std::string ExternalLoads(const std::string& name) {
-  std::string xml =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n"
-      "<ExternalLoads name=\"" +
-      name + "_loads\">\n<objects>\n";
-  for (const bool left : {false, true}) {
-    const std::string side = left ? "l" : "r";
-    xml += "<ExternalForce name=\"foot_" + side +
-           "\">\n<appliesForce>true</appliesForce>\n<applied_to_body>" +
-           joint_angles::OpenSimFoot(left) +
-           "</applied_to_body>\n<force_expressed_in_body>ground</force_expressed_in_body>\n"
-           "<point_expressed_in_body>ground</point_expressed_in_body>\n<force_identifier>"
-           "ground_force_" +
-           side + "_v</force_identifier>\n<point_identifier>ground_force_" + side +
-           "_p</point_identifier>\n<torque_identifier>ground_torque_" + side +
-           "_</torque_identifier>\n<data_source_name>Unassigned</data_source_name>\n"
-           "</ExternalForce>\n";
-  }
-  return xml + "</objects>\n<groups />\n<datafile>" + name +
-         "_grf.mot</datafile>\n</ExternalLoads>\n</OpenSimDocument>\n";
-}
 
 namespace {
 
@@ -140,12 +83,12 @@ motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool
 
 Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
                                         const std::vector<bool>& valid,
-                                        const std::vector<FootForces>& forces,
+                                        const std::vector<motion::FootForces>& forces,
                                         const std::string& name, const MotionGatherer& gatherer) {
   Result<motion::Table> angles = joint_angles::JointAngles(motion);
   if (!angles) return angles.error();
   angles->name = name + ".mot";
-  motion::Table table = ForceTable(forces, motion.rate_hz);
+  motion::Table table = motion::ForceTable(forces, motion.rate_hz);
   table.name = name + "_grf.mot";
   if (gatherer.is_biped()) {  // Nothing about it is estimated, and a person's model is not its.
     return std::vector<NamedText>{{angles->name, motion::WriteTable(*angles)},
@@ -155,11 +98,15 @@ Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
   deviations.name = name + "_sd.sto";
   const std::string source(body::AngleDeviationSource());
   std::vector<NamedText> texts{
-      {angles->name, WithNote(motion::WriteTable(*angles),
-                              "Angles are estimates: " + deviations.name + " has their " + source)},
+      {angles->name,
+       motion::WithNote(motion::WriteTable(*angles),
+                        "Angles are estimates: " + deviations.name + " has their " + source)},
       {table.name, motion::WriteTable(table)},
-      {deviations.name, WithNote(motion::WriteTable(deviations), source), true},
-      {name + "_loads.xml", ExternalLoads(name), true}};
+      {deviations.name, motion::WithNote(motion::WriteTable(deviations), source), true},
+      {name + "_loads.xml", motion::ExternalLoads(name), true}};
+  const auto csv = motion::AnglesCsv(*angles, valid);
+  if (!csv) return csv.error();
+  texts.push_back({name + "_angles.csv", *csv, true});
   // Without a weight there is no model.
   if (const auto person = gatherer.Person()) {
     const auto model = joint_angles::OpenSimModel(motion, *person, name);
@@ -209,14 +156,14 @@ Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const Gat
   }
   if (format == BodyFormat::kTrc) {
     return std::vector<NamedText>{
-        {name + ".trc", motion::WriteTrc(JointPlaces(motion, valid), name + ".trc")}};
+        {name + ".trc", motion::WriteTrc(motion::JointPlaces(motion, valid), name + ".trc")}};
   }
   const auto forces = gatherer.Forces();
   if (!forces) return forces.error();
   if (format == BodyFormat::kMot) {
     return MotTexts(motion, valid, *forces, name, gatherer);
   }
-  const auto c3d = motion::WriteC3d(ToC3d(motion, valid, *forces));
+  const auto c3d = motion::WriteC3d(motion::ToC3d(motion, valid, *forces));
   if (!c3d) return c3d.error();
   return std::vector<NamedText>{{name + ".c3d", *c3d}};
 }
@@ -369,109 +316,6 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
 
 namespace {
 
-/// A millionth of a second.
-double Rounded(double value) { return std::round(value * 1e6) / 1e6; }
-
-}  // namespace
-
-motion::Table ForceTable(const std::vector<FootForces>& forces, double rate_hz) {
-  motion::Table table;
-  table.columns = {"time"};
-  for (const char* side : {"r", "l"}) {
-    const std::string force = std::string("ground_force_") + side + "_";
-    for (const char* part : {"vx", "vy", "vz", "px", "py", "pz"}) {
-      table.columns.push_back(force + part);
-    }
-    for (const char* part : {"x", "y", "z"}) {
-      table.columns.push_back(std::string("ground_torque_") + side + "_" + part);
-    }
-  }
-  table.values.setZero(static_cast<Eigen::Index>(forces.size()),
-                       static_cast<Eigen::Index>(table.columns.size()));
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    auto row = table.values.row(static_cast<Eigen::Index>(i));
-    row(0) = Rounded(static_cast<double>(i) / rate_hz);
-    for (const int side : {1, 0}) {
-      const FootForce& foot = forces[i][static_cast<std::size_t>(side)];
-      const Eigen::Index first = side == 1 ? 1 : 10;
-      row(first + 1) = foot.load_n;
-      row(first + 3) = foot.cop_W.x();
-      row(first + 4) = foot.cop_W.z();
-      row(first + 5) = -foot.cop_W.y();
-    }
-  }
-  return table;
-}
-
-namespace {
-
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
-constexpr double kStepM = 0.1;    // Corners of the plates lie on a grid.
-constexpr double kNoLoadM = 0.5;  // Half the plate's sides where no foot was ever loaded.
-constexpr int kChannelsPerFoot = 6;
-
-/// The smallest rectangle on the grid, in x and y of W, with all centres of pressure in its inside.
-Eigen::AlignedBox2d Rectangle(const std::vector<FootForces>& forces) {
-  Eigen::AlignedBox2d box;
-  for (const FootForces& feet : forces) {
-    for (const FootForce& foot : feet) {
-      if (foot.load_n > 0) box.extend(foot.cop_W.head<2>());
-    }
-  }
-  if (box.isEmpty()) return {Vector2d(-kNoLoadM, -kNoLoadM), Vector2d(kNoLoadM, kNoLoadM)};
-  const Vector2d least = ((box.min() / kStepM).array().ceil() - 1) * kStepM;
-  const Vector2d most = ((box.max() / kStepM).array().floor() + 1) * kStepM;
-  return {least, most};
-}
-
-motion::C3dPlate PlateOf(const Eigen::AlignedBox2d& box, int first_channel) {
-  motion::C3dPlate plate;
-  plate.type = 2;
-  // In the order of the quadrants of the plate, whose y is to the right.
-  plate.corners.col(0) << box.max().x(), box.min().y(), 0;
-  plate.corners.col(1) << box.min().x(), box.min().y(), 0;
-  plate.corners.col(2) << box.min().x(), box.max().y(), 0;
-  plate.corners.col(3) << box.max().x(), box.max().y(), 0;
-  for (int i = 0; i < kChannelsPerFoot; ++i) plate.channels.push_back(first_channel + i);
-  return plate;
-}
-
-}  // namespace
-
-motion::C3d ToC3d(const motion::Motion& motion, const std::vector<bool>& valid,
-                  const std::vector<FootForces>& forces) {
-  motion::C3d c3d;
-  c3d.points = motion::ToWorld(motion::FileAxes::kYUp, JointPlaces(motion, valid));
-  c3d.x_screen = "+X";
-  c3d.y_screen = "+Z";
-  c3d.analog_rate_hz = motion.rate_hz;
-  const Eigen::AlignedBox2d box = Rectangle(forces);
-  const Vector2d middle = box.center();
-  c3d.analog.setZero(2 * kChannelsPerFoot, static_cast<Eigen::Index>(forces.size()));
-  for (int foot = 0; foot < 2; ++foot) {
-    const int first = kChannelsPerFoot * foot;
-    c3d.plates.push_back(PlateOf(box, first));
-    for (const char* name : {"Fx", "Fy", "Fz", "Mx", "My", "Mz"}) {
-      c3d.analog_names.push_back(name + std::to_string(foot + 1));
-      c3d.analog_units.push_back(name[0] == 'F' ? "N" : "Nmm");
-    }
-    for (std::size_t i = 0; i < forces.size(); ++i) {
-      const FootForce& one = forces[i][static_cast<std::size_t>(foot)];
-      if (!(one.load_n > 0)) continue;
-      const Vector2d cop_W = one.cop_W.head<2>() - middle;
-      const Vector3d cop(1000 * cop_W.x(), -1000 * cop_W.y(), 0);  // mm, axes of the plate.
-      const Vector3d force(0, 0, -one.load_n);
-      c3d.analog.col(static_cast<Eigen::Index>(i)).segment<3>(first) = force;
-      c3d.analog.col(static_cast<Eigen::Index>(i)).segment<3>(first + 3) = cop.cross(force);
-    }
-  }
-  return c3d;
-}
-
-namespace {
-
 constexpr double kMostRateHz = 1000;
 constexpr double kMostLagS = 10;
 constexpr double kMostRowsPerFrame = 100;  // Limit on rows that fill gaps between frames.
@@ -602,10 +446,10 @@ Result<motion::Motion> MotionGatherer::Finish() const {
   return motion;
 }
 
-Result<std::vector<FootForces>> MotionGatherer::Forces() const {
+Result<std::vector<motion::FootForces>> MotionGatherer::Forces() const {
   const auto grid = MakeGrid();
   if (!grid) return grid.error();
-  std::vector<FootForces> forces(grid->frames.size());
+  std::vector<motion::FootForces> forces(grid->frames.size());
   const auto lag = static_cast<std::size_t>(std::llround(lag_s() / grid->step_s));
   for (std::size_t i = 0; i < forces.size(); ++i) {
     // A frame has the newest loads, and the pose of a lag before them.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,9 +11,8 @@
 #include "common/base/result.h"
 #include "common/body/body.h"
 #include "common/body/skeleton.h"
-#include "common/virtual/motion/markers.h"
+#include "common/virtual/motion/body_files.h"
 #include "common/virtual/motion/motion.h"
-#include "common/virtual/motion/table.h"
 #include "footing/v1/character.pb.h"
 
 namespace footing::log_client {
@@ -30,10 +28,6 @@ struct ExportedMotion {
   /// The file with the stated errors of this person's angles; empty for the biped's.
   std::string angle_errors;
 };
-
-/// The joints of every frame, in the axes of TRC files (OpenSim: x ahead, y up, z right), from 0 s.
-/// They are not seen in a frame that is not `valid`.
-motion::MarkerTracks JointPlaces(const motion::Motion& motion, const std::vector<bool>& valid);
 
 /// File format of an exported body.
 enum class BodyFormat {
@@ -57,7 +51,8 @@ enum class BvhSkeleton {
 /// is InvalidData; an existing file is a usage error, unless `replace`.
 ///
 /// Beside them stand the stated standard deviations of the angles: "pose_1_p07_errors.csv" for each
-/// coordinate, and with kMot "pose_1_p07_sd.sto" with the columns and times of the angles.
+/// coordinate, and with kMot "pose_1_p07_sd.sto" with the columns and times of the angles, and
+/// "pose_1_p07_angles.csv" with their change from standing (motion::AnglesCsv).
 ///
 /// Where the pose is not valid, the places of joints have a gap; rotations and angles, whose files
 /// cannot have one, keep the pose.
@@ -65,39 +60,6 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
                                                  const std::string& folder, BodyFormat format,
                                                  bool replace,
                                                  BvhSkeleton skeleton = BvhSkeleton::kCmu);
-
-// Forces under the feet of a reconstructed body, a table for OpenSim (.mot). Axes: x ahead, y up,
-// z right.
-
-/// Ground reaction on one foot: upward force, N, at a point of the floor.
-struct FootForce {
-  double load_n = 0;
-  Eigen::Vector3d cop_W = Eigen::Vector3d::Zero();  ///< m.
-};
-
-/// Left, right.
-using FootForces = std::array<FootForce, 2>;
-
-/// Ground forces, a row for each of `forces`, from 0 s on: ground_force_r_vx, ... Only the vertical
-/// force is known; the others and the free moments are 0.
-motion::Table ForceTable(const std::vector<FootForces>& forces, double rate_hz);
-
-/// A table of OpenSim with a line for people in its header, which readers pass over.
-std::string WithNote(std::string table, const std::string& note);
-
-/// Says to OpenSim's tools which columns of "NAME_grf.mot" (ForceTable) act on which foot.
-std::string ExternalLoads(const std::string& name);
-
-/// A reconstructed body as a C3D file holds it: the centres of the joints as points, the forces
-/// under the feet as two force plates. Axes: W (x ahead, y left, z up).
-///
-/// Plate 1 is the left foot, plate 2 the right one. Both are one rectangle of the floor that holds
-/// all centres of pressure, and of type 2: three forces on the person and three moments about the
-/// rectangle's middle, in axes x ahead, y right, z down. Only the vertical force and the moments
-/// that it causes are known; the others are 0. The points of a frame that is not `valid` are not
-/// seen.
-motion::C3d ToC3d(const motion::Motion& motion, const std::vector<bool>& valid,
-                  const std::vector<FootForces>& forces);
 
 /// The skeleton of a frame, with the lengths that it has there. All joints turn about z, x, y of
 /// W's axes at rest, as BVH files mostly do; ends do not turn. InvalidData where its links are not
@@ -124,7 +86,7 @@ class MotionGatherer {
   /// The loads of the feet at the instants of the poses of Finish(). A foot has none where its
   /// centre of pressure is not known, or while the boards or its insole measure nothing: the engine
   /// repeats the last load then.
-  Result<std::vector<FootForces>> Forces() const;
+  Result<std::vector<motion::FootForces>> Forces() const;
   /// Whether the engine reported each pose of Finish() as valid.
   Result<std::vector<bool>> Valid() const;
   bool empty() const { return frames_.empty(); }

@@ -12,6 +12,7 @@
 #include "daemon/offline/eval/momentum.h"
 #include "daemon/offline/eval/pose.h"
 #include "daemon/offline/eval/pose_replay.h"
+#include "daemon/offline/eval/reconstruct.h"
 #include "daemon/offline/eval/report.h"
 #include "daemon/offline/eval/sphere.h"
 #include "daemon/offline/eval/spirals.h"
@@ -35,6 +36,7 @@ constexpr char kExamples[] =
     "  footing-eval plan straight 1 --out tracks.svg\n"
     "  footing-eval momentum --motion clip.bvh --json\n"
     "  footing-eval pose --motion clip.bvh --json\n"
+    "  footing-eval reconstruct --motion clip.bvh --out poses --json\n"
     "  footing-eval arm --motion clip.bvh --json\n"
     "  footing-eval attitude --imu imu.csv --rate-hz 100 --json\n"
     "  footing-eval hand --motion clip.bvh --json\n"
@@ -61,6 +63,7 @@ void AddCommands(CLI::App& app, footing::eval::Shared& shared) {
   AddMonkeyCommand(app, shared);
   AddPlanCommand(app, shared);
   AddPoseCommand(app, shared);
+  AddReconstructCommand(app, shared);
   AddReplayCommand(app, shared);
   AddSphereCommand(app, shared);
   AddSpheresCommand(app, shared);

@@ -8,7 +8,6 @@
 #include "common/runtime/files.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/standard_layout.h"
-#include "common/virtual/options/load.h"
 #include "common/virtual/options/sensor_options.h"
 #include "common/virtual/people/perform.h"
 #include "common/virtual/people/script.h"
@@ -52,7 +51,9 @@ Result<motion_files::LoadedMotion> Perform(const PoseSceneOptions& options) {
   return motion_files::LoadedMotion{choreography::Perform(*script, *body).motion, "", height_m};
 }
 
-Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
+}  // namespace
+
+Result<motion_files::LoadedMotion> LoadScene(const PoseSceneOptions& options) {
   if (options.motion.ends_with(".json")) {
     if (options.still.empty()) return Perform(options);
     return UsageError(options.motion + ": has no markers, so --still " + options.still +
@@ -83,6 +84,8 @@ Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
   return loaded;
 }
 
+namespace {
+
 pose_run::Settings WithHeight(const PoseSceneOptions& options,
                               const motion_files::LoadedMotion& loaded) {
   pose_run::Settings settings = options.settings;
@@ -105,7 +108,7 @@ Result<std::vector<pose_run::ActivitySpan>> ReadActivities(const PoseSceneOption
 Result<Eigen::Vector2d> PlatesOffset(const PoseSceneOptions& options) {
   PoseSceneOptions still = options;
   still.motion = options.still;
-  const auto loaded = Load(still);
+  const auto loaded = LoadScene(still);
   if (!loaded) return loaded.error();
   const auto forces = motion_files::LoadForces(options.still_forces);
   if (!forces) return InvalidData(forces.error().message);
@@ -123,7 +126,7 @@ pose_run::Activities LabelActivities(const pose_run::PoseRun& run,
 Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options) {
   const auto spans = ReadActivities(options);
   if (!spans) return spans.error();
-  const auto loaded = Load(options);
+  const auto loaded = LoadScene(options);
   if (!loaded) return loaded.error();
   auto run = pose_run::RunPose(loaded->motion, WithHeight(options, *loaded), options.motion);
   if (run) run->activities = LabelActivities(*run, *spans);
@@ -131,10 +134,15 @@ Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options) {
 }
 
 Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options) {
+  const auto loaded = LoadScene(options);
+  if (!loaded) return loaded.error();
+  return MakePlateScene(options, *loaded);
+}
+
+Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options,
+                                          const motion_files::LoadedMotion& loaded) {
   const auto spans = ReadActivities(options);
   if (!spans) return spans.error();
-  const auto loaded = Load(options);
-  if (!loaded) return loaded.error();
   auto forces = motion_files::LoadForces(options.forces);
   if (!forces) return InvalidData(forces.error().message);
   if (!options.still_forces.empty()) {
@@ -144,7 +152,7 @@ Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options) {
       plate.cop_W.topRows<2>().colwise() += *offset;
     }
   }
-  auto plates = pose_run::RunOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
+  auto plates = pose_run::RunOnPlates(loaded.motion, *forces, WithHeight(options, loaded),
                                       options.motion, options.forces);
   if (!plates) return plates.error();
   plates->measured.activities = LabelActivities(plates->measured, *spans);
@@ -153,14 +161,14 @@ Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options) {
 }
 
 Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options) {
-  const auto loaded = Load(options);
+  const auto loaded = LoadScene(options);
   if (!loaded) return loaded.error();
   return pose_run::RunInsoles(loaded->motion, WithHeight(options, *loaded), options.motion);
 }
 
 Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options,
                                       const pose_run::Places& places) {
-  const auto loaded = Load(options);
+  const auto loaded = LoadScene(options);
   if (!loaded) return loaded.error();
   return pose_run::RunArms(loaded->motion, WithHeight(options, *loaded), options.motion, places);
 }

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/result.h"
+#include "common/virtual/options/load.h"
 #include "daemon/offline/pose_run/plates.h"
 #include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/pose/arm_model.h"
@@ -27,12 +28,19 @@ struct PoseSceneOptions {
   pose_run::Settings settings;
 };
 
+/// The motion alone, in the standard layout if that is asked for. InvalidData when it cannot be
+/// read.
+Result<motion_files::LoadedMotion> LoadScene(const PoseSceneOptions& options);
+
 /// Scene on two boards. InvalidData when a file cannot be read.
 Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options);
 
 /// With the plates of options.forces, whose COPs are moved by what those of options.still_forces
 /// are off from under the body that stands still. A file that cannot be read is InvalidData, too.
 Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options);
+/// The same under a motion that LoadScene() has read.
+Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options,
+                                          const motion_files::LoadedMotion& loaded);
 
 /// Scene with insoles in the shoes.
 Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options);

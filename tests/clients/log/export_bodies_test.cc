@@ -52,8 +52,8 @@ motion::C3d ThroughAFile(const motion::C3d& c3d) {
 }
 
 TEST(C3dBody, ItsPointsAreTheJoints) {
-  const motion::C3d read =
-      ThroughAFile(ToC3d(Column(3), std::vector<bool>(3, true), std::vector<FootForces>(3)));
+  const motion::C3d read = ThroughAFile(
+      ToC3d(Column(3), std::vector<bool>(3, true), std::vector<motion::FootForces>(3)));
   EXPECT_EQ(read.points.names, (std::vector<std::string>{"root", "top"}));
   EXPECT_EQ(read.y_screen, "+Z");
   EXPECT_LT((read.points.p[0].col(2) - Vector3d(0.02, 0.2, 1)).norm(), 1e-6);
@@ -61,7 +61,7 @@ TEST(C3dBody, ItsPointsAreTheJoints) {
 }
 
 TEST(C3dBody, APoseThatIsNotValidHasInvalidPoints) {
-  const motion::C3d c3d = ToC3d(Column(3), {true, false, true}, std::vector<FootForces>(3));
+  const motion::C3d c3d = ToC3d(Column(3), {true, false, true}, std::vector<motion::FootForces>(3));
   const auto bytes = motion::WriteC3d(c3d);
   ASSERT_TRUE(bytes.ok()) << bytes.error().message;
   // After the parameters: per frame two points of four floats, then twelve analog values.
@@ -80,7 +80,7 @@ TEST(C3dBody, APoseThatIsNotValidHasInvalidPoints) {
 }
 
 TEST(C3dBody, ItsPlatesCarryTheFeet) {
-  std::vector<FootForces> forces(3);
+  std::vector<motion::FootForces> forces(3);
   forces[1] = {{{300, {0.13, 0.21, 0}}, {450, {0.05, -0.18, 0}}}};
   forces[2] = {{{0, {9, 9, 0}}, {700, {-0.02, -0.2, 0}}}};  // The left foot is in the air.
   const motion::C3d read = ThroughAFile(ToC3d(Column(3), std::vector<bool>(3, true), forces));
@@ -92,7 +92,7 @@ TEST(C3dBody, ItsPlatesCarryTheFeet) {
   for (std::size_t foot = 0; foot < 2; ++foot) {
     const motion::PlateForces& plate = plates->plates[foot];
     for (std::size_t i = 0; i < 3; ++i) {
-      const FootForce& one = forces[i][foot];
+      const motion::FootForce& one = forces[i][foot];
       const auto column = static_cast<Eigen::Index>(i);
       EXPECT_LT((plate.force_W.col(column) - Vector3d(0, 0, one.load_n)).norm(), 1e-3);
       if (one.load_n > 0) {
@@ -219,7 +219,7 @@ TEST(MotionGatherer, TheForcesStandBesideTheFramesOfTheMotion) {
   const auto forces = gatherer.Forces();
   ASSERT_TRUE(forces.ok()) << forces.error().message;
   std::vector<double> left_n;
-  for (const FootForces& feet : *forces) left_n.push_back(feet[0].load_n);
+  for (const motion::FootForces& feet : *forces) left_n.push_back(feet[0].load_n);
   EXPECT_EQ(left_n,
             (std::vector<double>{100, 101, 0, 0, 104, 105}));  // 2 has no COP, 3 is missing.
   EXPECT_EQ((*forces)[1][1].load_n, 500);
@@ -381,7 +381,7 @@ TEST(ExportBodies, AFileThatIsNoneIsRefusedByName) {
 }
 
 TEST(ForceTable, IsReadAgainAsTheForcesOfTwoPlates) {
-  std::vector<FootForces> forces(3);
+  std::vector<motion::FootForces> forces(3);
   forces[1][0] = {300, {0.1, 0.2, 0.05}};
   forces[1][1] = {400, {0.15, -0.2, 0.05}};
   // Through the file and back, by the reader of --boards forces.
