@@ -3,6 +3,7 @@ frames, or Wiimotes strapped on the arms, runs again to the same frames, bit for
 
 Usage: pose_replay.py BINARY_FOLDER kinect|camera|straps
 """
+import json
 import sys
 
 from harness import Stage
@@ -49,6 +50,23 @@ def run(binaries, hands):
         assert result["frames_compared"] > 600, result
         assert result["frames_equal"] == result["frames_compared"], result
         assert result["features_equal"] == result["features_compared"], result
+        smooth(stage, recording, result["frames_compared"])
+
+
+def smooth(stage, recording, frames):
+    """With a lag the same frames come out, each with an earlier pose, and they run again, too."""
+    copy = stage.folder / "smooth.mcap"
+    result = stage.run_json("footing-eval", "smooth", recording, "--out", copy)
+    assert result["frames"] == frames, result
+    again = stage.run_json("footing-eval", "replay", copy)
+    assert again["frames_equal"] == again["frames_compared"] == frames, again
+    begins = []
+    for name in (recording, copy):
+        out = stage.folder / name.stem
+        done = stage.run("footing-log", "export", name, "--format", "mot", "--out", out, "--json")
+        assert done.returncode == 0, done
+        begins.append(json.loads(done.stdout)["files"][0]["begin_s"])
+    assert abs(begins[0] - begins[1] - 0.2) < 0.03, begins
 
 
 if __name__ == "__main__":

@@ -1,16 +1,22 @@
 #include "daemon/offline/eval/pose_replay.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "common/base/json_text.h"
 #include "common/cli/cli.h"
+#include "common/recording/mcap_reader.h"
+#include "common/recording/mcap_writer.h"
 #include "common/recording/recorded_session.h"
+#include "common/recording/recording_writer.h"
 #include "common/runtime/exchange.h"
 #include "daemon/offline/eval/replay.h"
 #include "daemon/simulation/gait_service/applied_input.h"
@@ -64,14 +70,16 @@ std::string ComparableFrame(v1::CharacterFrame frame) {
 /// The pose engine, driven step by step by recorded inputs.
 class PoseRerun {
  public:
+  /// With the recorded lag, or with `lag_s` in its place.
   static Result<std::unique_ptr<PoseRerun>> Create(const PoseRecording& recording,
-                                                   const std::string& data_folder) {
+                                                   const std::string& data_folder,
+                                                   std::optional<double> lag_s = std::nullopt) {
     const v1::Character& shown = recording.frames.begin()->second.characters(0);
     reconstruction::Options options;
     options.mode =
         shown.body().mode() == "paper" ? reconstruction::Mode::kPaper : reconstruction::Mode::kBest;
     options.rate_hz = PoseLine::kRateHz;
-    options.lag_s = shown.body().lag_s();
+    options.lag_s = lag_s.value_or(shown.body().lag_s());
     auto models = pose_service::LoadPoseModels(data_folder, options.mode);
     if (!models) return models.error();
     std::unique_ptr<PoseRerun> rerun(new PoseRerun(std::move(models).value(), options));
@@ -86,7 +94,7 @@ class PoseRerun {
       const auto first_options =
           pose_service::OptionsFrom(recording.inputs.begin()->second, rerun->options_);
       if (!first_options) return first_options.error();
-      rerun->options_ = *first_options;
+      rerun->Take(*first_options);
     }
     auto run = rerun->MakeRun(number, first);
     if (!run) return run.error();
@@ -102,7 +110,7 @@ class PoseRerun {
       if (known_.count(number) == 0) {
         const auto options = pose_service::OptionsFrom(*input, options_);
         if (!options) return options.error();
-        options_ = *options;
+        Take(*options);
         auto run = MakeRun(number, pose_service::SubjectFrom(*input));
         if (!run) return run.error();
         (*run)->same_person = input->pose().same_person();
@@ -131,7 +139,13 @@ class PoseRerun {
 
  private:
   PoseRerun(reconstruction::Models models, const reconstruction::Options& options)
-      : models_(std::move(models)), options_(options) {}
+      : models_(std::move(models)), options_(options), lag_s_(options.lag_s) {}
+
+  /// With the lag of the best mode; the paper mode has none.
+  void Take(const reconstruction::Options& options) {
+    options_ = options;
+    options_.lag_s = options.mode == reconstruction::Mode::kBest ? lag_s_ : 0;
+  }
 
   Result<std::unique_ptr<pose_service::SubjectRun>> MakeRun(std::uint64_t number,
                                                             const Subject& subject) {
@@ -143,6 +157,7 @@ class PoseRerun {
 
   const reconstruction::Models models_;
   reconstruction::Options options_;  ///< Options of the newest.
+  double lag_s_;
   struct Known {
     Subject subject;
     reconstruction::Options options;
@@ -153,6 +168,21 @@ class PoseRerun {
   std::unique_ptr<PoseRun> run_;
   PoseFrame frame_;
 };
+
+/// Runs every recorded step again, and shows each recorded frame when its step is done.
+template <typename F>
+Result<void> EachFrame(const PoseRecording& recording, PoseRerun& rerun, std::uint64_t& last_step,
+                       F show) {
+  for (const auto& [frame_step, recorded] : recording.frames) {
+    while (last_step < frame_step) {
+      const auto input = recording.inputs.find(++last_step);
+      const auto done = rerun.Step(input == recording.inputs.end() ? nullptr : &input->second);
+      if (!done) return done;
+    }
+    show(frame_step, recorded);
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -175,21 +205,138 @@ Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks,
   }
   auto rerun = PoseRerun::Create(recording, data_folder);
   if (!rerun) return rerun.error();
-  for (const auto& [frame_step, recorded] : recording.frames) {
-    while (result.last_step < frame_step) {
-      const auto input = recording.inputs.find(++result.last_step);
-      const auto done = (*rerun)->Step(input == recording.inputs.end() ? nullptr : &input->second);
-      if (!done) return done.error();
-    }
-    ++result.frames;
-    result.state_hash = (*rerun)->state_hash();
-    if (ComparableFrame((*rerun)->Publish(recorded)) == ComparableFrame(recorded)) {
-      ++result.equal;
-    } else if (result.first_difference_step == 0) {
-      result.first_difference_step = frame_step;
-    }
-  }
+  const auto ran =
+      EachFrame(recording, **rerun, result.last_step,
+                [&](std::uint64_t frame_step, const v1::CharacterFrame& recorded) {
+                  ++result.frames;
+                  result.state_hash = (*rerun)->state_hash();
+                  if (ComparableFrame((*rerun)->Publish(recorded)) == ComparableFrame(recorded)) {
+                    ++result.equal;
+                  } else if (result.first_difference_step == 0) {
+                    result.first_difference_step = frame_step;
+                  }
+                });
+  if (!ran) return ran.error();
   return result;
+}
+
+namespace {
+
+constexpr char kFrameSchema[] = "footing.v1.CharacterFrame";
+
+/// Copies a recording, with other frames of the character at their steps.
+class FrameCopier {
+ public:
+  FrameCopier(recording::OutputFile& file,
+              const std::map<std::uint64_t, v1::CharacterFrame>& frames)
+      : file_(file),
+        frames_(frames),
+        writer_({"", std::string("footing-eval ") + cli::Version()}, {}) {}
+
+  mcap::Visitor Visitor() {
+    mcap::Visitor visitor;
+    visitor.schema = [this](const mcap::Schema& schema) {
+      if (schema.name == kFrameSchema) schemas_.insert(schema.id);
+      writer_.CopySchema(schema);
+    };
+    visitor.channel = [this](const mcap::Channel& channel) {
+      if (schemas_.contains(channel.schema_id)) channels_.insert(channel.id);
+      writer_.CopyChannel(channel);
+    };
+    visitor.message = [this](const mcap::Message& message) { Copy(message); };
+    visitor.attachment = [this](const mcap::Attachment& attachment) {
+      writer_.Add(attachment);
+      WriteDown();
+    };
+    visitor.metadata = [this](const mcap::Metadata& metadata) { writer_.Add(metadata); };
+    visitor.chunk = [this](const mcap::Chunk& chunk) {
+      writer_.SetCompress(chunk.compression == mcap::kZstd);
+    };
+    return visitor;
+  }
+
+  Result<void> Finish() {
+    writer_.Finish();
+    WriteDown();
+    if (!written_) return written_;
+    return file_.Sync();
+  }
+
+ private:
+  void Copy(mcap::Message message) {
+    std::string bytes;
+    v1::CharacterFrame frame;
+    if (channels_.contains(message.channel_id) &&
+        frame.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) {
+      if (const auto found = frames_.find(frame.step()); found != frames_.end()) {
+        bytes = found->second.SerializeAsString();
+        message.data = bytes;
+      }
+    }
+    writer_.Add(message);
+    WriteDown();
+  }
+
+  void WriteDown() {
+    const std::string bytes = writer_.Take();
+    if (written_ && !bytes.empty()) written_ = file_.Write(bytes);
+  }
+
+  recording::OutputFile& file_;
+  const std::map<std::uint64_t, v1::CharacterFrame>& frames_;
+  mcap::Writer writer_;
+  std::set<std::uint16_t> schemas_, channels_;
+  Result<void> written_;
+};
+
+/// The frame as it would have been with the lag; what does not depend on it stays.
+v1::CharacterFrame WithLag(const v1::CharacterFrame& recorded, const v1::CharacterFrame& again) {
+  v1::CharacterFrame frame = again;
+  frame.set_overruns(recorded.overruns());
+  for (int i = 0; i < std::min(frame.characters_size(), recorded.characters_size()); ++i) {
+    const v1::BodyState& before = recorded.characters(i).body();
+    v1::BodyState& body = *frame.mutable_characters(i)->mutable_body();
+    body.set_note(before.note());
+    body.set_hands_source(before.hands_source());
+  }
+  return frame;
+}
+
+}  // namespace
+
+Result<std::uint64_t> SmoothPose(const std::string& path, const std::string& out, double lag_s,
+                                 const std::string& data_folder, bool replace) {
+  std::error_code error;
+  if (std::filesystem::equivalent(path, out, error)) {
+    return UsageError("the new recording may not replace " + path + "; name another with --out");
+  }
+  const auto recorded = ReadRecorded(path);
+  if (!recorded) return recorded.error();
+  if (!IsPoseRecording(recorded->simulation)) {
+    return InvalidData(path +
+                       ": has no frame of the pose engine: record footing-sim --engine pose");
+  }
+  PoseRecording recording = GatherPose(recorded->simulation);
+  if (const auto whole = CheckFirstStep(recording.frames.begin()->first); !whole) {
+    return Error{whole.error().kind, path + ": " + whole.error().message};
+  }
+  auto rerun = PoseRerun::Create(recording, data_folder, lag_s);
+  if (!rerun) return rerun.error();
+  std::uint64_t last_step = 0;
+  std::map<std::uint64_t, v1::CharacterFrame> frames;
+  const auto ran = EachFrame(recording, **rerun, last_step,
+                             [&](std::uint64_t step, const v1::CharacterFrame& before) {
+                               frames[step] = WithLag(before, (*rerun)->Publish(before));
+                             });
+  if (!ran) return Error{ran.error().kind, path + ": " + ran.error().message};
+  const auto in = recording::MappedFile::Open(path);
+  if (!in) return in.error();
+  auto file = recording::OutputFile::Create(out, replace);
+  if (!file) return file.error();
+  FrameCopier copier(*file, frames);
+  mcap::Walk(in->bytes(), copier.Visitor(), mcap::WalkMode::kStrict);
+  if (const auto done = copier.Finish(); !done) return done.error();
+  return frames.size();
 }
 
 namespace {
@@ -296,6 +443,41 @@ void AddReplayCommand(CLI::App& app, Shared& shared) {
   command->add_option("--data-folder", options->data_folder,
                       "Folder of the pose engine's models (default: the installed ones)");
   command->callback([options, &shared] { shared.exit_code = Run(*options); });
+}
+
+void AddSmoothCommand(CLI::App& app, Shared& shared) {
+  struct Options {
+    std::string file, out, data_folder;
+    double lag_ms = 200;
+    bool force = false;
+  };
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand(
+      "smooth",
+      "Copy of a recording of the pose engine in which each pose also uses the time after it");
+  command->add_option("file", options->file, "Recording, MCAP file of footing-log")->required();
+  command->add_option("--out", options->out, "New recording")->required();
+  command
+      ->add_option("--lag-ms", options->lag_ms,
+                   "Time after a pose that it may use, ms: 0, 100 or 200 (default 200)")
+      ->check(CLI::IsMember({0, 100, 200}));
+  command->add_option("--data-folder", options->data_folder,
+                      "Folder of the pose engine's models (default: the installed ones)");
+  command->add_flag("--force", options->force, "Overwrite an existing recording");
+  command->footer(
+      "Examples:\n"
+      "  footing-eval smooth walk.mcap --out smooth.mcap\n"
+      "  footing-log export smooth.mcap --format mot --out walk/");
+  command->callback([options, &shared] {
+    const auto frames = SmoothPose(options->file, options->out, options->lag_ms / 1000,
+                                   options->data_folder, options->force);
+    if (!frames) {
+      shared.exit_code = cli::Report(frames.error());
+      return;
+    }
+    PrintReport({{"out", options->out}, {"frames", *frames}, {"lag_ms", options->lag_ms}},
+                shared.json);
+  });
 }
 
 }  // namespace footing::eval

@@ -32,6 +32,15 @@ struct Recorded {
 /// the first is taken.
 Result<Recorded> ReadRecorded(const std::string& path);
 
+/// Writes a copy of a recording of the pose engine, in which the engine has run again with this
+/// lag: the pose of a frame is that of `lag_s` before it and uses all that was measured until then,
+/// as with footing-sim --lag-ms. Returns the number of its frames. InvalidData as of ReplayPose.
+Result<std::uint64_t> SmoothPose(const std::string& path, const std::string& out, double lag_s,
+                                 const std::string& data_folder, bool replace);
+
+/// `footing-eval smooth FILE.mcap --out FILE.mcap`.
+void AddSmoothCommand(CLI::App& app, Shared& shared);
+
 /// `footing-eval replay FILE.mcap`: runs a recording's raw reports and engine inputs again, at
 /// their stamps, and compares the features and the biped's state hashes with the recorded ones bit
 /// for bit. Exit code 1 when something differs, 4 when the recording holds nothing to run again.
