@@ -56,7 +56,7 @@ NOT_HERE = {
     r"again\.mcap|first\.mcap|body\.mcap|game\.mcap": "reads what a command above would have recorded",
 }
 # Those that connect to a pose engine, or read what was recorded of one.
-POSE_ENGINE = re.compile(r"^footing-ctl (t-pose|subject|mode)|--next-subject|session\.mcap")
+POSE_ENGINE = re.compile(r"^footing-ctl (t-pose|subject|mode)|--next-subject|(session|smooth)\.mcap")
 
 
 def commands_of_text(text):

@@ -202,8 +202,9 @@ class AngleReader {
       if (near != nullptr) angles_rad_[i] = near->angles_rad_[i];
       body::SetJointRotation(joint_, Between(at_, segments_, all_[i].parent, all_[i].child),
                              angles_rad_[i]);
+      if (near != nullptr) continue;
       if (all_[i].child < kUpperArm) WithinAQuarter(angles_rad_[i]);
-      if (near == nullptr && all_[i].parent != kGround) WithinATurn(angles_rad_[i]);
+      if (all_[i].parent != kGround) WithinATurn(angles_rad_[i]);
     }
   }
 

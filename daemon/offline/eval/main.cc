@@ -45,7 +45,7 @@ constexpr char kExamples[] =
     "  footing-eval sphere --frames frames --camera frames/camera.json --json\n"
     "  footing-eval calibration --method marks --boards 1 --trials 1 --json\n"
     "  footing-eval spirals --seeds 20 --json\n"
-    "  footing-eval smooth walk.mcap --out smooth.mcap --json\n"
+    "  footing-eval smooth session.mcap --out smooth.mcap\n"
     "  footing-eval replay walk.mcap --json     # recorded by footing-log record "
     "--from-ring --out walk.mcap";
 

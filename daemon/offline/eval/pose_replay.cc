@@ -466,8 +466,8 @@ void AddSmoothCommand(CLI::App& app, Shared& shared) {
   command->add_flag("--force", options->force, "Overwrite an existing recording");
   command->footer(
       "Examples:\n"
-      "  footing-eval smooth walk.mcap --out smooth.mcap\n"
-      "  footing-log export smooth.mcap --format mot --out walk/");
+      "  footing-eval smooth session.mcap --out smooth.mcap\n"
+      "  footing-log export smooth.mcap --format mot --out smooth/");
   command->callback([options, &shared] {
     const auto frames = SmoothPose(options->file, options->out, options->lag_ms / 1000,
                                    options->data_folder, options->force);

@@ -132,6 +132,14 @@ TEST_F(AngleErrorsTest, AMotHasATableWithADeviationForEachAngle) {
     EXPECT_EQ(values(2), stated->bent_deg) << column;
     EXPECT_NEAR(values(3), 360 / std::sqrt(12), 1e-3) << column;  // Not valid: any direction.
   }
+  // For plots: too short for a standing that angles could change from, and no angle where not
+  // valid.
+  const std::string csv = Bytes(Path("out/pose_1_p07_angles.csv"));
+  EXPECT_EQ(csv.rfind("time_s,valid,pelvis_tilt_deg,", 0), 0u) << csv;
+  const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
+  const std::size_t cells = last.find(",0,");
+  ASSERT_NE(cells, std::string::npos) << last;
+  EXPECT_EQ(last.find_first_not_of(",\n", cells + 3), std::string::npos) << last;
 }
 
 /// Reads a model by OpenSim's rules and moves it: places of its markers, in OpenSim's axes.
