@@ -38,7 +38,8 @@ constexpr const char* kReadme =
     "\n"
     "sourcedata/trials.tsv has one row for each attempt, sourcedata/config what the simulation "
     "ran\n"
-    "with: version, settings, the interface's mapping table with its values, hashes of the gains.\n"
+    "with: version, settings, the interface's mapping table with its values, hashes of the gains,\n"
+    "and the features that footingd computed (best, or as the paper prints them).\n"
     "phenotype/survey.tsv has the ratings. Numbers stand for participants, instants count from "
     "the\n"
     "start of 1900, and free text is left out unless the study's owners decided otherwise.\n";
@@ -126,7 +127,8 @@ class BundleWriter {
         if (const auto done = Write(folder + file.name, file.text); !done) return done.error();
       }
     }
-    if (const ordered_json config = AnonymousConfig(tables->config); !config.is_null()) {
+    if (const ordered_json config = AnonymousConfig(tables->config, tables->sensor_config);
+        !config.is_null()) {
       const auto done = Write("sourcedata/config/" + stem + run + "_config.json", Json(config));
       if (!done) return done.error();
     }

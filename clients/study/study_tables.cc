@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "clients/study/plan/phases.h"
+#include "common/base/json_text.h"
 #include "common/base/text.h"
 #include "common/recording/bids_tables.h"
 #include "common/stream/trial.h"
@@ -277,10 +278,11 @@ ordered_json AnonymousTable(ordered_json table) {
 
 }  // namespace
 
-ordered_json AnonymousConfig(const std::string& json) {
+ordered_json AnonymousConfig(const std::string& json, const std::string& sensor_json) {
   const ordered_json config = ordered_json::parse(json, nullptr, /*allow_exceptions=*/false);
   if (!config.is_object()) return nullptr;
   ordered_json kept = Only(config, {"program", "version", "engine", "step_s", "sha256"});
+  kept["features"] = text::SettingIn(sensor_json, "features").value_or("best");
   if (config.contains("settings")) {
     kept["settings"] =
         Only(config["settings"],

@@ -58,7 +58,8 @@ Result<bids::RecordedMotion> ReadTrial(const recording::RecordedSession& session
 
 /// Configuration of footing-sim (EffectiveConfig of the protocol) without parts that may name a
 /// person, a place or a file: addresses, paths, the client that gave a table, and the person and
-/// date of a measured table. Null: the text is not such a config.
-nlohmann::ordered_json AnonymousConfig(const std::string& json);
+/// date of a measured table. `features` are those of footingd, which publishes a config only if
+/// they are not the best ones. Null: `json` is not such a config.
+nlohmann::ordered_json AnonymousConfig(const std::string& json, const std::string& sensor_json);
 
 }  // namespace footing::study::bundle

@@ -97,12 +97,14 @@ class Reader {
   Result<void> ReadDevices(const RecordedServer& server) {
     const auto ticks = ReadTicks(
         server, {Tick::kStatusFieldNumber, Tick::kMotionFieldNumber, Tick::kBoardsFieldNumber,
-                 Tick::kNunchukFieldNumber, Tick::kHandsFieldNumber, Tick::kEventsFieldNumber});
+                 Tick::kNunchukFieldNumber, Tick::kHandsFieldNumber, Tick::kEventsFieldNumber,
+                 Tick::kConfigFieldNumber});
     if (!ticks) return ticks.error();
     const auto clock = RunClock::Of(server, *zero_wall_ns_);
     if (!clock) return clock.error();
     devices_.Start(*clock);
     for (const Tick& tick : *ticks) {
+      if (tick.has_config()) motion_.sensor_config = tick.config().json();
       devices_.Add(wire::SensorTick(tick));
       AddEvents(tick, *clock, choice_.undone, motion_.events);
     }

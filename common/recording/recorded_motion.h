@@ -26,7 +26,8 @@ struct RecordedMotion {
   std::vector<MotionTable> tables;  ///< The table of footing-sim first, then one a sending device.
   /// In order for each server's start; with markers, of all servers by time.
   std::vector<Event> events;
-  std::string config;  ///< The last EffectiveConfig of the recording; empty: it has none.
+  /// The last EffectiveConfig of footing-sim, and of footingd; empty: the recording has none.
+  std::string config, sensor_config;
 };
 
 /// A recording as tables. Time counts from the first frame of the trial, else from the recording's

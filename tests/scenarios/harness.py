@@ -120,8 +120,8 @@ class Stage:
         # It counts once a second.
         self.wait_for(lambda: left_out() >= missing, f"{address} to explain that {missing} of its ticks are missing", 5)
 
-    def start_servers(self, interface="wrist"):
-        self.start("footingd", "--listen", self.sensor, "--source", f"stream:{self.devices}")
+    def start_servers(self, *words, interface="wrist"):
+        self.start("footingd", "--listen", self.sensor, "--source", f"stream:{self.devices}", *words)
         self.wait_for_socket(self.sensor)
         self.wait_for_socket(self.devices)
         self.start("footing-sim", "--sensor", self.sensor, "--listen", self.simulation,

@@ -235,6 +235,8 @@ def check_export(stage):
     assert len(events) == 4 and all("trial_ready" in text for text in events), events
     ends = [re.findall(r"trial_\w+", text)[-1] for text in events]
     assert all(end in ("trial_finished", "trial_stopped") for end in ends), ends
+    configs = [json.loads(text) for name, text in files.items() if name.endswith("_config.json")]
+    assert [(one["features"], one["settings"]["gaits"]) for one in configs] == [("paper", "best")] * 4, configs
     trials = [line.split("\t") for line in files["sourcedata/trials.tsv"].splitlines()]
     assert len(trials) == 1 + 5 and set(trials[0][1:]) == set(json.loads(files["sourcedata/trials.json"])), trials
     key = (stage.folder / "s.study/participant_key.csv")
@@ -260,7 +262,7 @@ def main():
     with Stage(sys.argv[2]) as stage:
         (stage.folder / "s.json").write_text(json.dumps(PROTOCOL))
         check_refusals(stage)
-        stage.start_servers()
+        stage.start_servers("--features", "paper")
         stage.start_user("demo")
         trials, finished = check_kill_and_resume(stage)
         check_recordings(stage, trials, finished)

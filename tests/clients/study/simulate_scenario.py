@@ -96,7 +96,7 @@ def check_camera_roll(stage):
     stage.run_json("footing-study", "export", *words, "--out", stage.folder / "r.bids")
     config = json.loads(next((stage.folder / "r.bids/sourcedata/config").iterdir()).read_text())
     assert config["interface"]["name"] == "leg" and config["interface"]["camera_roll"] is True, config
-    assert config["settings"]["camera_roll"] is False, config
+    assert config["settings"]["camera_roll"] is False and config["features"] == "best", config
 
 
 def check_refusals(stage):
