@@ -26,29 +26,30 @@ Ability AbilityWith(UserInterface interface, TurnSource turn_by) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:  // A cycle and a half at 2.5 Hz, and the change of the hands.
       ability.turn_delay_s = 0.35;
-      ability.run_jump_s = 1.65;
+      ability.run_jump_s = 1.78;
+      ability.jump_size = 1.45;
       ability.walk_jump_s = 1.3;
       break;
     case UserInterface::kArm:
       ability.turn_delay_s = 0.5;
-      ability.run_jump_s = 1.76;
+      ability.run_jump_s = 1.72;
       ability.walk_jump_s = 1.45;
       break;
     case UserInterface::kLeg:  // Feet show their heights in a whole cycle of either.
       ability.turn_delay_s = turn_by == TurnSource::kFeet ? 0.7 : 0.35;
-      ability.run_jump_s = 1.72;
+      ability.run_jump_s = 1.76;
       ability.walk_jump_s = 1.45;
       break;
     case UserInterface::kJoystick:
       ability.turn_delay_s = 0.1;
       ability.jumps_at_once = true;
-      ability.run_jump_s = 0.7;
+      ability.run_jump_s = 0.79;
       ability.walk_jump_s = 0.85;
       break;
     case UserInterface::kBoards:  // Steps end, both feet stand, then the heels rise.
       ability.turn_delay_s = 0.6;
       ability.jumps_at_once = true;
-      ability.run_jump_s = 1.3;
+      ability.run_jump_s = 1.35;
       ability.walk_jump_s = 1.25;
       break;
   }
@@ -70,19 +71,28 @@ constexpr double kLongestS = 3;
 constexpr double kLeapM = 0.06;
 /// One look does not change a habit by more.
 constexpr double kMostS = 0.6;
+constexpr double kMostRatio = 1.5;
+/// A motion at ease can be made so much larger: hands of an ordinary user then swing by 50 degrees
+/// to either side, well within what wrists and elbows do.
+constexpr double kLargest = 1.6;
 
 }  // namespace
 
-JumpTiming::JumpTiming(double run_s, double walk_s, double error_s, std::uint64_t seed)
-    : random_(seed), run_s_(run_s), walk_s_(walk_s), sd_s_(error_s) {
+JumpHabit::JumpHabit(const Ability& ability, double error_s, std::uint64_t seed)
+    : random_(seed),
+      run_s_(ability.run_jump_s),
+      walk_s_(ability.walk_jump_s),
+      size_(ability.jump_size),
+      wanted_m_(ability.jump_height_m),
+      sd_s_(error_s) {
   error_s_ = sd_s_ * random_.Normal();
 }
 
-double JumpTiming::LeadS(Gait from) const {
+double JumpHabit::LeadS(Gait from) const {
   return std::max(0.0, (from == Gait::kRun ? run_s_ : walk_s_) + error_s_);
 }
 
-void JumpTiming::Begin(double time_s, Gait from, double speed_mps, double middle_m) {
+void JumpHabit::Begin(double time_s, Gait from, double speed_mps, double middle_m) {
   if (begun_s_ >= 0) Learn();
   begun_s_ = time_s;
   tried_ = true;
@@ -94,7 +104,7 @@ void JumpTiming::Begin(double time_s, Gait from, double speed_mps, double middle
   error_s_ = sd_s_ * random_.Normal();
 }
 
-void JumpTiming::See(double time_s, Gait gait, double along_m, double com_m) {
+void JumpHabit::See(double time_s, Gait gait, double along_m, double com_m) {
   if (begun_s_ < 0) return;
   if (gait == Gait::kJump) {
     if (!jumped_) from_m_ = com_m;
@@ -109,15 +119,20 @@ void JumpTiming::See(double time_s, Gait gait, double along_m, double com_m) {
   }
 }
 
-/// Who leapt too early begins later, and the other way round.
-void JumpTiming::Learn() {
+/// Who leapt too early begins later, and the other way round; who leapt too low moves more widely,
+/// and no leap is too high for a pit.
+void JumpHabit::Learn() {
   const bool seen = jumped_ && highest_m_ > from_m_ + kLeapM;
   const double late_s = seen ? (highest_at_m_ - middle_m_) / speed_mps_ : kLateS;
   HabitOf(from_run_) += kLearned * std::clamp(late_s, -kMostS, kMostS);
+  if (seen) {
+    const double ratio = std::clamp(wanted_m_ / (highest_m_ - from_m_), 1.0, kMostRatio);
+    size_ = std::min(kLargest, size_ * (1 + kLearned * (ratio - 1)));
+  }
   begun_s_ = -1;
 }
 
-void JumpTiming::Fail(Gait gait) {
+void JumpHabit::Fail(Gait gait) {
   if (begun_s_ >= 0) {
     Learn();
   } else if (!tried_) {
@@ -126,7 +141,7 @@ void JumpTiming::Fail(Gait gait) {
   tried_ = false;
 }
 
-void JumpTiming::End() {
+void JumpHabit::End() {
   if (begun_s_ >= 0) Learn();
   tried_ = false;
 }
@@ -149,6 +164,9 @@ constexpr double kRunAgainS = 1;
 constexpr double kRunOverM = 0.25;
 /// No character moves so far between two looks: it was put back.
 constexpr double kPutBackM = 1.5;
+/// No run-up is like the one before: in those of people without training the footfalls vary by up
+/// to 0.58 m from try to try (Scott, Li & Davids 1997; standard deviation), over some 15 m.
+constexpr double kRunUpSpread = 0.04;
 /// The effort follows an error of the speed: a share a second, and at most.
 constexpr double kCorrection = 0.25;
 constexpr double kMostCorrection = 0.4;
@@ -158,9 +176,7 @@ constexpr double kClearerAfterS = 2;
 }  // namespace
 
 Driver::Driver(const Ability& ability, const Style& style, std::uint64_t seed)
-    : ability_(ability),
-      style_(style),
-      timing_(ability.run_jump_s, ability.walk_jump_s, style.timing_s, seed) {}
+    : ability_(ability), style_(style), habit_(ability, style.timing_s, seed), random_(seed + 1) {}
 
 void Driver::SeeTrack(const stream::Track& track) {
   const bool other = track.number != track_.number || track.name != track_.name;
@@ -174,8 +190,9 @@ void Driver::StartOver() {
   intention_ = {};
   steering_ = false;
   jump_until_m_ = -1;
-  timing_.End();
+  habit_.End();
   correction_ = 0;
+  run_up_ = std::max(0.8, 1 + kRunUpSpread * random_.Normal());
 }
 
 /// Steps a second as seen; before there are any, a walk's.
@@ -269,19 +286,19 @@ bool Driver::ChooseJump(const Observation& now) {
   const double ahead_m = ability_.turn_delay_s * now.speed_mps;
   if (jump_until_m_ >= 0 && here_m - ahead_m > jump_until_m_ + 0.3) jump_until_m_ = -1;
   if (jump_until_m_ >= 0 && !ability_.jumps_at_once) return true;
-  if (jump_until_m_ >= 0 && timing_.waits()) return true;
+  if (jump_until_m_ >= 0 && habit_.waits()) return true;
   double length_m = 0;
   const double edge_m = PitAhead(now, &length_m);
   // A single leap is under way, or it is over and the pit behind it; one that came down before the
   // pit is followed by another.
   if (jump_until_m_ >= 0 && (now.gait == Gait::kJump || edge_m > kSamePitM)) return false;
-  const double lead_s = std::max(0.0, timing_.LeadS(now.gait) - ability_.turn_delay_s);
+  const double lead_s = std::max(0.0, habit_.LeadS(now.gait) - ability_.turn_delay_s);
   const double middle_m = edge_m + length_m / 2;
   // A run-up gets faster on the way to the pit, and who wants that reckons with it.
   const double gain_mps = std::max(0.0, intention_.speed_mps - now.speed_mps);
   if (middle_m >= lead_s * std::max(0.5, now.speed_mps + gain_mps / 2)) return false;
   jump_until_m_ = here_m + edge_m + length_m;
-  timing_.Begin(now_s_, now.gait, now.speed_mps, here_m + middle_m);
+  habit_.Begin(now_s_, now.gait, now.speed_mps, here_m + middle_m);
   return true;
 }
 
@@ -289,6 +306,7 @@ void Driver::WantJump(Intention& wanted) const {
   wanted.gait = Gait::kJump;
   wanted.speed_mps = ability_.jump_mps;
   wanted.height_m = ability_.jump_height_m;
+  wanted.size = habit_.size();
 }
 
 /// The gait of a straight track's task; false where the user may choose.
@@ -329,7 +347,7 @@ void Driver::ChooseGait(const Observation& now, Intention& wanted) {
   constexpr double kRunStepsPerS = 2.1, kWalkStepsPerS = 2.2;
   const double turn_rad = kTurnShare * ability_.turn_per_step_rad;
   const double bend = CurvatureAhead(now, std::max(now.speed_mps, ability_.run_min_mps));
-  const double run_mps = std::min(std::min(style_.favourite_mps, ability_.run_max_mps),
+  const double run_mps = std::min(std::min(run_up_ * style_.favourite_mps, ability_.run_max_mps),
                                   turn_rad * kRunStepsPerS / std::max(1e-3, bend));
   // A run that walks now, or the other way round, wants a reason.
   const double slack_mps = intention_.gait == Gait::kRun ? 0.0 : 0.2;
@@ -377,10 +395,10 @@ Intention Driver::Want(const Observation& seen) {
   }
   const Observation& delayed = Delayed(seen.time_s);
   if (!track_.segments.empty()) {
-    timing_.See(delayed.time_s, delayed.gait,
-                track::LengthTo(track_, track::Locate(track_, delayed.p_W_m)), delayed.com_m);
+    habit_.See(delayed.time_s, delayed.gait,
+               track::LengthTo(track_, track::Locate(track_, delayed.p_W_m)), delayed.com_m);
   }
-  if (delayed.trial.failures.jump > pit_falls_) timing_.Fail(intention_.gait);
+  if (delayed.trial.failures.jump > pit_falls_) habit_.Fail(intention_.gait);
   pit_falls_ = delayed.trial.failures.jump;
   now_s_ = seen.time_s;
   // A character that has fallen is put back soon.

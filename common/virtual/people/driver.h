@@ -24,10 +24,12 @@ struct Ability {
   bool jumps_at_once = false;    ///< One gesture is one jump; else it lasts as long as the jump.
   double turn_delay_s = 0.02;    ///< From the user's motion to a changed command.
   /// From the user's motion to the top of the character's first leap, out of a run and out of a
-  /// walk, as practice with pits teaches (docs/evaluation/tracks.md). The user corrects it by what
-  /// it sees.
+  /// walk, as practice with pits teaches (docs/evaluation/tracks.md): the way there, over the speed
+  /// at its begin. The user corrects it by what it sees.
   double run_jump_s = 0.8;
   double walk_jump_s = 0.85;
+  /// Size of the motion that jumps as high, as a share of one at ease; practice teaches it, too.
+  double jump_size = 1;
 };
 
 /// Ability to command at once, without a body.
@@ -37,17 +39,21 @@ Ability DirectAbility();
 Ability AbilityWith(stream::UserInterface interface,
                     stream::TurnSource turn_by = stream::TurnSource::kHead);
 
-/// When a user has to begin the motion of a jump: the top of the character's leap is to be over the
-/// middle of the pit. A habit per gait, that every leap seen corrects in the direction in which it
-/// was off; and no moment is hit twice.
-class JumpTiming {
+/// When a user has to begin the motion of a jump, and how large it has to be: the top of the
+/// character's leap is to be over the middle of the pit, and no lower than the user wants. A habit
+/// per gait, that every leap seen corrects in the direction in which it was off; and no moment is
+/// hit twice.
+class JumpHabit {
  public:
-  /// `run_s` and `walk_s`: what the user knows by practice from the begin of the motion to the top
-  /// of the leap. `error_s` is the standard deviation of the own moment.
-  JumpTiming(double run_s, double walk_s, double error_s, std::uint64_t seed);
+  /// By practice the user knows the times from the begin of the motion to the top of the leap, and
+  /// the size of the motion for `jump_height_m`. `error_s` is the standard deviation of the own
+  /// moment.
+  JumpHabit(const Ability& ability, double error_s, std::uint64_t seed);
 
   /// How long before the middle of the pit, at the present speed, the next jump has to be begun, s.
   double LeadS(stream::Gait from) const;
+  /// Size of the motion, as a share of one at ease.
+  double size() const { return size_; }
   /// The motion of a jump over the pit whose middle is at `middle_m` along the track begins.
   void Begin(double time_s, stream::Gait from, double speed_mps, double middle_m);
   /// Takes the character as the user sees it: its gait, its place along the track, and the
@@ -67,6 +73,7 @@ class JumpTiming {
 
   noise::Random random_;
   double run_s_, walk_s_;
+  double size_, wanted_m_;
   double sd_s_;
   double error_s_ = 0;   ///< Error of the next moment.
   double begun_s_ = -1;  ///< Negative: no jump under way, or it was learned from.
@@ -117,7 +124,8 @@ class Driver {
   stream::Track track_;
   Ability ability_;
   Style style_;
-  JumpTiming timing_;
+  JumpHabit habit_;
+  noise::Random random_;
   std::deque<Observation> seen_;  ///< The last moments, newest last.
   std::deque<Wanted> wanted_;     ///< The same of the own turns.
   Intention intention_;
@@ -128,6 +136,7 @@ class Driver {
   double jump_until_m_ = -1;  ///< Along the track; negative: not jumping.
   double gait_since_s_ = 0;   ///< Since when this gait is wanted.
   double correction_ = 0;     ///< Correction of the effort, by the speed and the gait seen.
+  double run_up_ = 1;         ///< Speed of this run-up, as a share of the favourite one.
 };
 
 }  // namespace footing::users

@@ -113,7 +113,10 @@ biped::GaitCommand BoardsInterface::StepCommand(double time_s) {
     settled_.Reset(Gait::kStep);
     return command;
   }
-  const double frequency_hz = steps_.frequency_hz();
+  // Once both feet stand, either the steps have ended or the heels are about to rise: until that is
+  // known the gait goes on as it was, so that a leap has the speed of its run-up.
+  const double frequency_hz =
+      steps_.even_s() > 0 ? steps_.last_frequency_hz() : steps_.frequency_hz();
   const Gait now = settled_.gait();
   const bool run_seen = mapping_.border.IsRun(frequency_hz, now);
   const Gait seen = run_seen ? Gait::kRun : Gait::kWalk;

@@ -108,17 +108,30 @@ void SwingGait::Know(const LimbPair& limbs) {
                     .value_or(known_mps2_);
 }
 
+/// Limbs that change from one motion to another pass through low frequencies, and a run-up is not
+/// to be braked by them: a slower pace must last as a change of gait does.
+void SwingGait::FollowPace(double elapsed_s) {
+  const bool slower = known_hz_ < pace_hz_;
+  if (slower) {
+    slower_s_ += elapsed_s;
+    slower_hz_ = std::max(slower_hz_, known_hz_);
+    if (slower_s_ < mapping_.change_cycles / known_hz_) return;
+  }
+  pace_hz_ = slower ? slower_hz_ : known_hz_;
+  slower_s_ = slower_hz_ = 0;
+}
+
 void SwingGait::SetPace() {
   command_.gait = gait();
   command_.cadence_hz = 0;
   switch (command_.gait) {
     case Gait::kWalk:
-      command_.speed_mps = mapping_.walk_mps_from_hz(known_hz_);
-      command_.cadence_hz = kWalkStepsPerSwing * known_hz_;
+      command_.speed_mps = mapping_.walk_mps_from_hz(pace_hz_);
+      command_.cadence_hz = kWalkStepsPerSwing * pace_hz_;
       break;
     case Gait::kRun:
-      command_.speed_mps = mapping_.run_mps_from_hz(known_hz_);
-      command_.cadence_hz = kRunStepsPerSwing * known_hz_;
+      command_.speed_mps = mapping_.run_mps_from_hz(pace_hz_);
+      command_.cadence_hz = kRunStepsPerSwing * pace_hz_;
       break;
     case Gait::kJump:
       command_.speed_mps = mapping_.jump_mps_from_hz(known_hz_);
@@ -140,7 +153,7 @@ void SwingGait::WaitForPhase(double time_s, bool run) {
 
 biped::GaitCommand SwingGait::Rest() {
   other_s_ = 0;
-  known_hz_ = known_mps2_ = 0;
+  known_hz_ = known_mps2_ = pace_hz_ = slower_s_ = slower_hz_ = 0;
   settled_.Reset(Gait::kStep);
   return command_ = biped::GaitCommand{};
 }
@@ -161,6 +174,7 @@ biped::GaitCommand SwingGait::Advance(double time_s, const LimbPair& limbs, bool
     time_s_ = time_s;
     return time_s - valid_time_s_ > mapping_.hold_s ? Rest() : command_;
   }
+  const double elapsed_s = time_s - time_s_;
   valid_time_s_ = time_s_ = time_s;
   if (run == settled_run_) other_s_ = 0;
   const Gait seen = Seen(limbs.phase_rad, run);
@@ -169,10 +183,15 @@ biped::GaitCommand SwingGait::Advance(double time_s, const LimbPair& limbs, bool
   // Two resting limbs that turn, and turn back, are a swing together for half a cycle.
   const double from_rest_s = seen == Gait::kJump ? mapping_.change_cycles / known_hz_ : least_s;
   const double lasting_s = gait() == Gait::kStep ? from_rest_s : std::max(least_s, change_s);
+  const Gait before = gait();
   if (settled_.Advance(time_s, seen, std::max(mapping_.change_min_s, lasting_s)) == seen) {
+    if (seen != before) pace_hz_ = 0;
+    FollowPace(elapsed_s);
     SetPace();
     settled_run_ = run;
     other_s_ = 0;
+  } else {
+    slower_s_ = slower_hz_ = 0;
   }
   return command_;
 }

@@ -87,6 +87,7 @@ class SwingGait {
   stream::Gait Seen(double phase_rad, bool run) const;
   void WaitForPhase(double time_s, bool run);
   void Know(const LimbPair& limbs);
+  void FollowPace(double elapsed_s);
   void SetPace();
 
   SwingMapping mapping_;
@@ -97,6 +98,9 @@ class SwingGait {
   bool settled_run_ = false;  ///< `run` when the gait was last seen as it is.
   double known_hz_ = 0;       ///< The last frequency since the limbs began to move; 0: none.
   double known_mps2_ = 0;     ///< The last amplitude, in the same way.
+  double pace_hz_ = 0;        ///< Frequency that the speed follows; 0: none yet.
+  double slower_s_ = 0;       ///< For how long the limbs have been slower than that, ...
+  double slower_hz_ = 0;      ///< ... and the highest frequency meanwhile.
   double other_s_ = 0;        ///< For how long it has been different without a phase.
 };
 

@@ -103,6 +103,33 @@ TEST(Gestures, HandsThatSwingInTurnsNeverJump) {
   }
 }
 
+/// Between a run and a jump the features show frequencies that nobody swings.
+TEST(Gestures, ARunUpKeepsItsSpeedUntilItsJumpAndASlowerRunIsFollowed) {
+  WristInterface wrist(
+      ParseWristMapping(test::DataFile(kWristMappingFile), kWristMappingFile).value());
+  const std::vector<Segment> run_up{
+      {.duration_s = 1},
+      {.duration_s = 3, .frequency_hz = 3.6, .phase_rad = kPi, .amplitude_mps2 = 10},
+      {.duration_s = 3, .frequency_hz = 2.6, .phase_rad = kPi, .amplitude_mps2 = 10},
+      {.duration_s = 3, .frequency_hz = 3.6, .phase_rad = kPi, .amplitude_mps2 = 10},
+      {.duration_s = 3, .frequency_hz = 2.2, .phase_rad = 0, .amplitude_mps2 = 12}};
+  double slow_mps = 0, slowest_mps = 10;
+  Gait last = Gait::kStep;
+  for (const eval::Tick& tick : Perform(run_up, 0.4, 1)) {
+    Inputs inputs;
+    TakeFeatures(tick.features, 0, inputs);
+    const auto command = wrist.Advance(tick.t_s, inputs);
+    if (tick.t_s < 5.5) slow_mps = command.speed_mps;
+    if (tick.t_s > 9.5 && command.gait == Gait::kRun) {
+      slowest_mps = std::min(slowest_mps, command.speed_mps);
+    }
+    last = command.gait;
+  }
+  EXPECT_EQ(last, Gait::kJump);
+  EXPECT_NEAR(slowest_mps, 3.42, 0.2);  // 1.5 + (3.6 - 2) / 2.5 * 3 m/s.
+  EXPECT_NEAR(slow_mps, 2.22, 0.2);     // 1.5 s after the change: 2.6 Hz.
+}
+
 TEST(Gestures, AGaitIsCommandedWithinThreeCyclesOfItsStart) {
   for (const double frequency_hz : {0.6, 1.3, 3.0}) {
     for (const double phase_rad : {0.0, kPi}) {

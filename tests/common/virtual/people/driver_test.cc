@@ -80,33 +80,53 @@ TEST(Driver, WantsNoJumpAnyMoreOnceItWasPutBack) {
   EXPECT_EQ(runner.RunTo(19.9).gait, Gait::kJump);  // And again before the pit.
 }
 
+/// Knows that a second passes until the top of a leap, which is to be 0.2 m high; hits every
+/// moment.
+JumpHabit Practised() {
+  Ability ability;
+  ability.run_jump_s = ability.walk_jump_s = 1;
+  ability.jump_height_m = 0.2;
+  return JumpHabit(ability, 0, 1);
+}
+
 /// A jump of a run at 2 m/s towards a pit with its middle at 20 m: it begins at 18 m, the character
-/// leaps so that its COM is highest, 0.2 m up, at `top_m`.
-void Leap(JumpTiming& timing, double top_m) {
+/// leaps so that its COM is highest, `height_m` up, at `top_m`.
+void Leap(JumpHabit& timing, double top_m, double height_m = 0.2) {
   timing.Begin(10, Gait::kRun, 2, 20);
   EXPECT_TRUE(timing.waits());
   for (double x_m = 18; x_m < top_m + 0.4; x_m += 0.02) {
     const double off_m = std::fabs(x_m - top_m);
     const Gait gait = off_m < 0.3 ? Gait::kJump : Gait::kRun;
-    timing.See(10 + (x_m - 18) / 2, gait, x_m, 1 + 0.2 * std::max(0.0, 1 - off_m / 0.3));
+    timing.See(10 + (x_m - 18) / 2, gait, x_m, 1 + height_m * std::max(0.0, 1 - off_m / 0.3));
   }
   EXPECT_FALSE(timing.waits());
 }
 
-TEST(JumpTiming, WhoLeaptTooEarlyBeginsLaterAndTheOtherWayRound) {
-  JumpTiming timing(1, 1, 0, 1);
+TEST(JumpHabit, WhoLeaptTooEarlyBeginsLaterAndTheOtherWayRound) {
+  JumpHabit timing = Practised();
   Leap(timing, 20);
   EXPECT_NEAR(timing.LeadS(Gait::kRun), 1, 0.005);
   Leap(timing, 19.5);  // 0.25 s before the pit's middle, of which 0.3 are learned.
   EXPECT_NEAR(timing.LeadS(Gait::kRun), 1 - 0.3 * 0.25, 0.01);
-  JumpTiming late(1, 1, 0, 1);
+  JumpHabit late = Practised();
   Leap(late, 20.5);
   EXPECT_NEAR(late.LeadS(Gait::kRun), 1 + 0.3 * 0.25, 0.01);
   EXPECT_EQ(late.LeadS(Gait::kWalk), 1);
 }
 
-TEST(JumpTiming, WhoHasSeenNoLeapBeforeTheFallWasTooLate) {
-  JumpTiming begun(1, 1, 0, 1), none(1, 1, 0, 1), leapt(1, 1, 0, 1);
+TEST(JumpHabit, WhoLeaptTooLowMovesMoreWidely) {
+  JumpHabit timing = Practised();
+  Leap(timing, 20, 0.3);
+  EXPECT_EQ(timing.size(), 1);
+  Leap(timing, 20, 0.15);
+  EXPECT_NEAR(timing.size(), 1.1, 0.03);  // 0.3 of a third.
+  for (int i = 0; i < 20; ++i) Leap(timing, 20, 0.1);
+  EXPECT_GT(timing.size(), 1.5);
+  EXPECT_LT(timing.size(), 1.7);  // A hand swings no farther.
+}
+
+TEST(JumpHabit, WhoHasSeenNoLeapBeforeTheFallWasTooLate) {
+  JumpHabit begun = Practised(), none = Practised(), leapt = Practised();
   begun.Begin(10, Gait::kWalk, 1, 20);
   begun.Fail(Gait::kWalk);
   EXPECT_GT(begun.LeadS(Gait::kWalk), 1.1);
@@ -119,13 +139,23 @@ TEST(JumpTiming, WhoHasSeenNoLeapBeforeTheFallWasTooLate) {
 }
 
 /// Out of a walk a small hop comes before the leap.
-TEST(JumpTiming, LearnsFromTheLeapAndNotFromTheHopBeforeIt) {
-  JumpTiming timing(1, 1, 0, 1);
+TEST(JumpHabit, LearnsFromTheLeapAndNotFromTheHopBeforeIt) {
+  JumpHabit timing = Practised();
   timing.Begin(10, Gait::kWalk, 1, 20);
   const double heights_m[] = {1, 1.03, 1.05, 1.02, 0.98, 1.1, 1.2, 1.1, 1};
   for (int i = 0; i < 9; ++i) timing.See(10.5 + 0.1 * i, Gait::kJump, 19.4 + 0.1 * i, heights_m[i]);
   timing.See(11.5, Gait::kWalk, 20.4, 1);
   EXPECT_NEAR(timing.LeadS(Gait::kWalk), 1, 1e-6);  // The top was at 20 m.
+}
+
+TEST(Driver, NoRunUpIsLikeTheOneBefore) {
+  Runner runner(PitAt20());
+  const double first_mps = runner.RunTo(12).speed_mps;
+  EXPECT_EQ(runner.RunTo(14).speed_mps, first_mps);
+  runner.seen.p_W_m.x() = 8;  // Put back.
+  const double second_mps = runner.RunTo(12).speed_mps;
+  EXPECT_NE(second_mps, first_mps);
+  EXPECT_NEAR(second_mps, first_mps, 0.15 * first_mps);
 }
 
 TEST(Driver, JumpsAgainAtOnceWhenASingleLeapCameDownBeforeThePit) {
