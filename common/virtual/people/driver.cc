@@ -49,7 +49,7 @@ Ability AbilityWith(UserInterface interface, TurnSource turn_by) {
     case UserInterface::kBoards:  // Steps end, both feet stand, then the heels rise.
       ability.turn_delay_s = 0.6;
       ability.jumps_at_once = true;
-      ability.run_jump_s = 1.35;
+      ability.run_jump_s = 1.2;
       ability.walk_jump_s = 1.25;
       break;
   }

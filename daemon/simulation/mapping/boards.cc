@@ -31,8 +31,8 @@ using stream::Activity;
 using stream::DeviceRole;
 using stream::Gait;
 
-constexpr double kWalkStepsPerCycle = 2;
-constexpr double kRunStepsPerCycle = 1;
+/// The character steps as the feet do.
+constexpr double kStepsPerCycle = 2;
 /// Below this share of the weight both feet are off, once it lasts; they are back after a while.
 constexpr double kOffShare = 0.25;
 constexpr double kOffS = 0.1;
@@ -127,7 +127,7 @@ biped::GaitCommand BoardsInterface::StepCommand(double time_s) {
   const bool run = command.gait == Gait::kRun;
   command.speed_mps =
       run ? mapping_.run_mps_from_hz(frequency_hz) : mapping_.walk_mps_from_hz(frequency_hz);
-  command.cadence_hz = (run ? kRunStepsPerCycle : kWalkStepsPerCycle) * frequency_hz;
+  command.cadence_hz = kStepsPerCycle * frequency_hz;
   return command;
 }
 

@@ -65,6 +65,7 @@ TEST(Boards, SteppingWalksAndRunsByTheFrequencyOfAFoot) {
     const auto run = For(4, person, boards);
     EXPECT_EQ(run.gait, Gait::kRun) << mass_kg;
     EXPECT_NEAR(run.speed_mps, 3, 0.3);  // 1.7 Hz is half way from 1.2 to 2.2 Hz.
+    EXPECT_NEAR(run.cadence_hz, 3.4, 0.15);
     EXPECT_EQ(run.turn_per_step_rad, 0);
     person.step_hz = 0;
     EXPECT_EQ(For(2, person, boards).gait, Gait::kStep);
