@@ -25,7 +25,7 @@ struct BoardsOptions {
   bool moves = false;         ///< With hands "camera": PS Moves in the fists light the spheres.
   std::string head = "none";  ///< none, or sphere: one on a cap, as a tracker sees it.
   /// Roles of Wiimotes with MotionPlus that are worn on the body (JointOfRole).
-  std::vector<std::string> segments;
+  std::vector<std::string> segment_roles;
   /// A hand that is lost for a while: its Wiimote out of reach, or not seen.
   std::string lost_hand;  ///< left or right; empty: none is.
   double lost_from_s = 0, lost_for_s = 0;
