@@ -51,9 +51,15 @@ Result<motion_files::LoadedMotion> Perform(const PoseSceneOptions& options) {
   return motion_files::LoadedMotion{choreography::Perform(*script, *body).motion, "", height_m};
 }
 
-}  // namespace
+/// The same movements at another speed, at the same rate.
+motion::Motion AtSpeed(double speed, const motion::Motion& clip) {
+  motion::Motion paced = clip;
+  paced.rate_hz *= speed;
+  paced.start_s /= speed;
+  return motion::Resampled(paced, clip.rate_hz);
+}
 
-Result<motion_files::LoadedMotion> LoadScene(const PoseSceneOptions& options) {
+Result<motion_files::LoadedMotion> LoadFile(const PoseSceneOptions& options) {
   if (options.motion.ends_with(".json")) {
     if (options.still.empty()) return Perform(options);
     return UsageError(options.motion + ": has no markers, so --still " + options.still +
@@ -81,6 +87,14 @@ Result<motion_files::LoadedMotion> LoadScene(const PoseSceneOptions& options) {
                options.motion.c_str(), 1e3 * standard->rms_m);
   loaded->motion = std::move(standard->motion);
   loaded->height_m = standard->height_m;
+  return loaded;
+}
+
+}  // namespace
+
+Result<motion_files::LoadedMotion> LoadScene(const PoseSceneOptions& options) {
+  auto loaded = LoadFile(options);
+  if (loaded && options.speed != 1) loaded->motion = AtSpeed(options.speed, loaded->motion);
   return loaded;
 }
 

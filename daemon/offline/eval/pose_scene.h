@@ -20,7 +20,8 @@ struct PoseSceneOptions {
   std::string motion;    ///< BVH, AMC, TRC or C3D, or a choreography (.json).
   std::string skeleton;  ///< ASF, of an AMC.
   std::optional<double> bvh_unit_m = {};
-  std::string still;              ///< TRC or C3D of the same person standing, of markers.
+  double speed = 1;   ///< Speed of the motion, of the recorded one; forces are those of that speed.
+  std::string still;  ///< TRC or C3D of the same person standing, of markers.
   std::string forces;             ///< MOT, STO or C3D of the plates under the same trial.
   std::string still_forces = {};  ///< The same of the plates under `still`; may be empty.
   std::string activities;         ///< CSV of labels (pose_run.h); empty: by rules.

@@ -155,6 +155,10 @@ namespace {
 void AddSceneFlags(CLI::App& command, PoseFlags& flags) {
   pose_run::Settings& settings = flags.scene.settings;
   AddMotionOptions(command, flags.scene);
+  command
+      .add_option("--speed", flags.scene.speed,
+                  "Speed of the motion, of the recorded one: 0.5 is slow motion, with its forces")
+      ->check(CLI::Range(0.25, 2.0));
   command.add_option("--forces", flags.scene.forces,
                      "Measured forces for --boards forces: MOT, STO or C3D");
   command.add_option(
@@ -320,6 +324,11 @@ Result<void> Translate(PoseFlags& flags) {
   }
   if ((flags.boards == "forces") == flags.scene.forces.empty()) {
     return UsageError("--boards forces and --forces FILE (.mot, .sto or .c3d) go together");
+  }
+  if (flags.scene.speed != 1 && (flags.boards == "forces" || !flags.scene.activities.empty())) {
+    return UsageError(
+        "--speed changes the motion and its computed forces: no --forces and no "
+        "--activities with it");
   }
   if (!flags.scene.still_forces.empty() &&
       (flags.boards != "forces" || flags.scene.still.empty())) {

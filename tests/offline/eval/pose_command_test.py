@@ -144,6 +144,15 @@ class Pose(unittest.TestCase):
         heavy = self.judge("pose", "--no-baselines", "--mass-error", "0.02")["mass_kg"]
         self.assertAlmostEqual(heavy, right, delta=0.3 * 0.02 * right)
 
+    def test_slow_motion_lasts_longer(self):
+        leave = 90  # Frames in which the T-pose is left, at any speed.
+        fast, slow = (self.judge("pose", "--speed", speed)["frames"] - leave for speed in ("1", "0.5"))
+        self.assertAlmostEqual(slow, 2 * fast, delta=3)
+        refused = run(EVAL, "pose", "--motion", DATA / "11_01.amc", "--skeleton", DATA / "11.asf", "--speed", "0.5",
+                      "--boards", "forces", "--forces", "plates.mot")
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn("--speed", refused.stderr)
+
     def test_the_same_seed_gives_the_same_and_another_does_not(self):
         first, again = (self.judge("pose", "--no-baselines", "--seed", "3")["mpjpe_cm"] for _ in "ab")
         self.assertEqual(first, again)
