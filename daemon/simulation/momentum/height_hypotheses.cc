@@ -67,6 +67,8 @@ constexpr double kApartSpreads = 2, kApartM = 0.1;
 // body that kept its T-pose, which they follow better than kFreeMass does, or
 // from one that moved.
 constexpr double kLeastOverweight = 0.005;
+// Share of the weight by which it may differ once the T-pose is left.
+constexpr double kAfterTPose = 0.05;
 constexpr double kSettledInTPose = 0.0025, kSettledSpread = 0.001;
 constexpr double kPostureS = 0.1;  // A posture older than this is not used.
 // Where a body is that nothing is known of, and how fast when it lands: a step
@@ -135,6 +137,7 @@ VerticalConfig HeightHypothesis(HeightRow which, double arms_hang_m, double cell
   config.weight.spread = row.weight_spread;
   config.weight.walk = row.walk;
   config.still_at_any_weight = row.any_weight;
+  if (which == kFreeWeight) config.weight.after_t_pose = kAfterTPose;
   config.by_rests = row.by_rests;
   return config;
 }

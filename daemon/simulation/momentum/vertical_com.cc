@@ -317,6 +317,14 @@ void VerticalCom::FollowHold(double height_m) {
   t_pose_.mean_m += (height_m - t_pose_.mean_m) / t_pose_.frames;
   t_pose_.near_m += step_s_ / (kHeldS + step_s_) * (height_m - t_pose_.near_m);
   t_pose_.held = std::abs(t_pose_.near_m - t_pose_.mean_m) < kHeldM;
+  if (!t_pose_.held) DoubtWeight(config_.weight.after_t_pose);
+}
+
+void VerticalCom::DoubtWeight(double share) {
+  Filter::Matrix q = Filter::Matrix::Zero();
+  q.block<VerticalInput::kGroups, VerticalInput::kGroups>(kGains, kGains)
+      .setConstant(share * share);
+  filter_.Predict(Filter::Matrix::Identity(), Filter::Vector::Zero(), q);
 }
 
 bool VerticalCom::holds_t_pose() const {
@@ -367,10 +375,7 @@ VerticalCom::Filter::Row VerticalCom::LevelRow(const VerticalInput& input) const
 void VerticalCom::LearnLevel(const Filter::Row& row, double level_mps2, double left_mps2,
                              double sd_mps2) {
   if (std::abs(left_mps2) > std::max(sd_mps2, kSteadyMps2)) {  // All that was known is in doubt.
-    Filter::Matrix q = Filter::Matrix::Zero();
-    q.block<VerticalInput::kGroups, VerticalInput::kGroups>(kGains, kGains)
-        .setConstant(std::pow(left_mps2 / kStandardGravityMps2, 2));
-    filter_.Predict(Filter::Matrix::Identity(), Filter::Vector::Zero(), q);
+    DoubtWeight(left_mps2 / kStandardGravityMps2);
   }
   filter_.Update(row, level_mps2, sd_mps2 * sd_mps2);
 }

@@ -23,6 +23,9 @@ struct VerticalConfig {
   struct {
     double spread = 0;  ///< At first, as a share of the weight.
     double walk = 0;    ///< By which it wanders, per root second.
+    /// By which the weight may differ, as a share, once the T-pose is left: who leaned on something
+    /// in it, or held something, may do so no longer.
+    double after_t_pose = 0;
   } weight;
   /// Still is who keeps the acceleration that the loads show, whatever it is; else who has none.
   bool still_at_any_weight = false;
@@ -145,6 +148,8 @@ class VerticalCom {
   void WatchLevel(double raw_mps2);
   /// Where a posture is the T-pose's no longer, it says nothing more of height and weight.
   void FollowHold(double height_m);
+  /// All groups may measure too much in common, by one more deviation of that share.
+  void DoubtWeight(double share);
   void LookAtTPose(const VerticalInput& input);
   /// Steady loads that show so much of an acceleration show a weight: were they not, the body would
   /// have moved further than its posture.

@@ -159,6 +159,33 @@ TEST(HeightHypotheses, APostureThatStaysShowsThatTheTPoseWeighedWrong) {
   }
 }
 
+// Weight found by `seconds` after it changed to `share` of what it was in the T-pose, as the T-pose
+// is left and squats of 20 cm begin, of which hands and feet show a half.
+double FoundShare(double share, int seconds) {
+  MadeBody body;
+  body.noise_n = 0.5;
+  body.com_m = [](double t) {
+    const double down = Ramp(t - 1) * (1 - std::cos(2 * t)) / 2, sway_m = 0.02 * Ramp(t - 0.5);
+    return Eigen::Vector3d(0, sway_m * std::sin(3.1 * t), kMadeHeightM - 0.2 * down);
+  };
+  const TPose pose = body.Calibrate();
+  HeightHypotheses bank(pose.mass_kg, kMadeStepS, 0.028, pose.cell_noise_n, LearnedHeightPosture());
+  bank.Start(pose.mean_loads);
+  for (int i = 0; i < (1 + seconds) * 60; ++i) {
+    const double t = i * kMadeStepS;
+    VerticalInput input = Groups(body.At(t), 20);
+    for (double& load : input.load_n) load *= t < 1 ? 1 : share;
+    bank.Advance(input);
+    bank.SeePosture(0.5 * (body.com_m(t).z() - kMadeHeightM) - 0.03 * Ramp(2 * (t - 0.5)));
+  }
+  return bank.mass_kg() / pose.mass_kg;
+}
+
+TEST(HeightHypotheses, FindsAWeightThatChangesWhenTheTPoseIsLeft) {
+  // By a filter that keeps the weight of the T-pose, 1 after ten seconds, too.
+  EXPECT_NEAR(FoundShare(0.95, 5), 0.95, 0.015);
+}
+
 // Root mean square error of the height from the fourth of six squats of 30 cm on, every four
 // seconds, of which hands and feet show a tenth. The cells measure `share` of what they measured in
 // the T-pose, and `extra` of the weight more while the body is low.
