@@ -43,7 +43,7 @@ NOT_HERE = {
     r"^sudo ": "as root",
     r"\.\.\.": "stands for the words before it",
     r"\b[A-Z]{2,}\b(?!=)": "has a word to fill in",
-    r"mocap|\.asf|\.trc|squats\.c3d|me\.mcap|me\.bvh": "reads motion capture of one's own; tests/offline runs it on recordings",
+    r"mocap|\.asf|\.trc|squats\.c3d|me\.mcap|me\.bvh|me/|other\.bvh": "reads motion capture of one's own; tests/offline runs it on recordings",
     r"tcp:|tls:": "needs an address of this host, or a server on another one",
     r"/etc/footing/": "reads the administrator's settings",
     r"0\.0\.0\.0|sensors --listen 192": "would listen to other hosts",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ constexpr double kMostTailRad = 0.5;
 constexpr double kMostMps2 = 30;
 
 constexpr double kTiltedRad = 0.12, kTippingRad = 0.45;  // Wings begin to help, and are half open.
-constexpr double kBlinkS = 0.16, kLeastBetweenBlinksS = 2, kMostBetweenBlinksS = 5;
+constexpr double kBlinkS = 0.16;
+constexpr std::uint64_t kBlinkSteps = 8;
 constexpr double kGazeS = 0.12, kMostGazeRad = 0.6;
 constexpr double kEyesAboveM = 0.60, kEyesAheadM = 0.40;
 
@@ -84,11 +86,10 @@ double BobM(double speed_mps) {
 void MoveHead(double speed_mps, bool touchdown, double dt_s, BirdMotion& motion) {
   Sprung& ahead = motion.head_ahead;
   const double most_m = BobM(speed_mps);
+  if (touchdown) motion.head_rests = false;
   if (motion.head_rests) {
-    ahead = {ahead.value - speed_mps * dt_s, -speed_mps};
-    const bool reached = ahead.value <= -most_m;
-    if (reached || (touchdown && ahead.value < 0)) motion.head_rests = false;
-    ahead.value = std::max(ahead.value, -kMostBobM);
+    // At the end of the neck's reach it goes on with the body.
+    ahead = {std::max(ahead.value - speed_mps * dt_s, -most_m), -speed_mps};
     return;
   }
   Step(ahead, most_m, kThrustRadps, 1, dt_s);
@@ -105,18 +106,9 @@ void MoveTail(const Eigen::Vector3d& acceleration_mps2, double turn_radps, doubl
   }
 }
 
-/// Every two to five seconds, by the number of the blink: the same each time.
-double BetweenBlinksS(int number) {
-  constexpr double kGolden = 0.6180339887498949;
-  const double share = number * kGolden - std::floor(number * kGolden);
-  return kLeastBetweenBlinksS + share * (kMostBetweenBlinksS - kLeastBetweenBlinksS);
-}
-
-void Blink(double dt_s, BirdMotion& motion) {
-  motion.to_blink_s -= dt_s;
-  if (motion.to_blink_s < -kBlinkS) motion.to_blink_s = BetweenBlinksS(++motion.blinks);
-  const double into = -motion.to_blink_s / kBlinkS;
-  motion.lid = into <= 0 ? 0 : std::clamp(2 - 4 * std::abs(into - 0.5), 0.0, 1.0);
+void Blink(bool touchdown, std::uint64_t steps, double dt_s, BirdMotion& motion) {
+  motion.blink_s = touchdown && steps % kBlinkSteps == 0 ? 0 : std::min(motion.blink_s + dt_s, 1.0);
+  motion.lid = std::clamp(2 - 4 * std::abs(motion.blink_s / kBlinkS - 0.5), 0.0, 1.0);
 }
 
 void LookAt(const CharacterPose& pose, double dt_s, BirdMotion& motion) {
@@ -172,7 +164,6 @@ BirdMotion Advance(const BirdMotion& motion, const BirdSkeleton& skeleton,
     next.head_pitch_rad = pitch_rad;
     next.body_height_m = height_m;
     next.body_m = body.position_m;
-    next.to_blink_s = BetweenBlinksS(0);
   }
   const double head = Share(dt_s, kHeadS);
   next.head_yaw_rad = WrapAngle(next.head_yaw_rad + head * WrapAngle(yaw_rad - next.head_yaw_rad));
@@ -200,7 +191,7 @@ BirdMotion Advance(const BirdMotion& motion, const BirdSkeleton& skeleton,
   next.body_m = body.position_m;
   next.velocity_mps = velocity_mps;
   next.body_yaw_rad = yaw_rad;
-  Blink(step_s, next);
+  Blink(touchdown, pose.gait.steps, step_s, next);
   LookAt(pose, step_s, next);
   return next;
 }

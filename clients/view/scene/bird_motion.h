@@ -28,7 +28,8 @@ struct Sprung {
 /// While it walks the head rests in space and is then thrust ahead, once a step, as pigeons' heads
 /// do (Frost 1978, "The optokinetic basis of head-bobbing in the pigeon"); while it runs it stays
 /// over the body. The tail lags behind the body's motion, the wings open in flight and for balance,
-/// the eyes look at the next foothold, and blink.
+/// the eyes look at the next foothold, and blink at every eighth step. Nothing depends on poses of
+/// some seconds ago, so a picture of a recording is the same whatever was shown before it.
 struct BirdMotion {
   bool placed = false;
   double head_yaw_rad = 0;    ///< Filtered over 0.2 s, as a bird holds its head still.
@@ -47,8 +48,7 @@ struct BirdMotion {
   Eigen::Vector3d body_m = Eigen::Vector3d::Zero(), velocity_mps = Eigen::Vector3d::Zero();
   double body_yaw_rad = 0;
   std::array<bool, 2> touches{false, false};
-  double to_blink_s = 0;  ///< Until the next blink begins.
-  int blinks = 0;
+  double blink_s = 1;  ///< Since the last blink began.
 };
 
 /// Moves on by dt_s >= 0. A body that is somewhere else at once starts again there.

@@ -233,20 +233,24 @@ void SegmentAttitude::Align() {
   attitude_.Align(/*heading_matters=*/false);
   bent_F_.setZero();
   bent_rad_s_ = 0;
+  squatted_ = false;
   state_ = {};
 }
 
 void SegmentAttitude::Advance(const HandReading& reading, double step_s) {
   constexpr double kBentRad = 0.35;      // A smaller bend shows little of its axis.
   constexpr double kEnoughRadS = 0.35;   // A second of that.
-  constexpr double kMostRadS = 2;        // Later bends are about any axis.
+  constexpr double kMostRadS = 2;        // Later bends are about any axis,
+  constexpr double kUprightRad = 0.2;    // and so is what follows an upright segment.
   constexpr double kAcrossSdRad = 0.12;  // A squat is so nearly sagittal.
   attitude_.Advance(reading, step_s);
   const HandState& turned = attitude_.state();
   if (!turned.valid) return;
   const Eigen::Vector3d up_F = turned.turn_W.col(2);
   const double bent_rad = std::atan2(up_F.head<2>().norm(), up_F.z());
-  if (bent_rad > kBentRad && bent_rad_s_ < kMostRadS) {
+  const bool enough = bent_F_.norm() >= kEnoughRadS;
+  squatted_ = squatted_ || bent_rad_s_ >= kMostRadS || (enough && bent_rad < kUprightRad);
+  if (bent_rad > kBentRad && !squatted_) {
     bent_F_ += bent_rad * step_s * Eigen::Vector2d(-up_F.y(), up_F.x()).normalized();
     bent_rad_s_ += bent_rad * step_s;
   }

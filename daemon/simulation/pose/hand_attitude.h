@@ -175,6 +175,7 @@ class SegmentAttitude {
   HandAttitude attitude_{0};
   Eigen::Vector2d bent_F_ = Eigen::Vector2d::Zero();  ///< Sum of the axes of bends, rad s.
   double bent_rad_s_ = 0;
+  bool squatted_ = false;  ///< The first bend is over.
   HandState state_;
 };
 

@@ -55,6 +55,7 @@ struct Walk {
       const double cycle = (steps + static_cast<double>(foot)) / 2;
       pose.contacts[foot].touching = cycle - std::floor(cycle) < 0.6;
     }
+    pose.gait.steps = static_cast<std::uint64_t>(steps + 1e-6);
     motion = scene::Advance(motion, FindParts(made::Biped()), pose, kDtS);
   }
   double HeadM() const { return pose.links[0].position_m.x() + motion.head_ahead.value; }
@@ -118,7 +119,7 @@ TEST(BirdMotion, TheTailSwingsToTheInsideOfATurn) {
   EXPECT_NEAR(motion.tail_yaw.value, 0.15 * 2, 0.02);
 }
 
-TEST(BirdMotion, EyesBlinkEveryFewSecondsAndOpenAgain) {
+TEST(BirdMotion, EyesBlinkAtEveryEighthStepAndOpenAgain) {
   Walk walk;
   int closed = 0, blinks = 0;
   bool was_closed = false;
@@ -129,9 +130,23 @@ TEST(BirdMotion, EyesBlinkEveryFewSecondsAndOpenAgain) {
     blinks += is_closed && !was_closed ? 1 : 0;
     was_closed = is_closed;
   }
-  EXPECT_GE(blinks, 60 / 5.2);
-  EXPECT_LE(blinks, 60 / 2);
-  EXPECT_LT(closed, 25 * blinks);
+  EXPECT_NEAR(blinks, 60 / (8 * Walk::kStepS), 1);
+  EXPECT_LT(closed, 20 * blinks);
+}
+
+TEST(BirdMotion, ForgetsWhatWasShownSomeSecondsAgo) {
+  Walk walk, other;
+  for (int i = 0; i < 137; ++i) other.Advance();  // Begins elsewhere in the cycle, and with a jolt.
+  walk = other;
+  walk.motion = {};
+  walk.motion.placed = false;
+  for (int i = 0; i < 800; ++i) {
+    walk.Advance();
+    other.Advance();
+  }
+  EXPECT_NEAR(walk.motion.head_ahead.value, other.motion.head_ahead.value, 1e-6);
+  EXPECT_NEAR(walk.motion.tail_pitch.value, other.motion.tail_pitch.value, 1e-6);
+  EXPECT_EQ(walk.motion.lid, other.motion.lid);
 }
 
 TEST(BirdMotion, EyesLookAtTheNextFoothold) {

@@ -260,11 +260,11 @@ class Train(unittest.TestCase):
         more = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--sensors", "--json")
         sensors = json.loads(more.stdout)["people"]["2"]
         self.assertEqual(sensors["best"], ways["best"], "other sensors change nothing for boards and hands")
-        # These people never turn the pelvis, so a belt alone says nothing new.
+        # These people never turn the pelvis, so a belt alone adds no more than its slip.
         for way in ("head", "head_kinect", "head_belt", "hands_feet_learned_head_belt"):
             self.assertNotEqual(sensors[way]["mpjpe_cm"], ways["best"]["mpjpe_cm"])
             self.assertNotIn(way, ways)
-        self.assertAlmostEqual(sensors["belt"]["mpjpe_cm"], ways["best"]["mpjpe_cm"], places=6)
+        self.assertAlmostEqual(sensors["belt"]["mpjpe_cm"], ways["best"]["mpjpe_cm"], delta=0.05)
         for way in ("true_com", "true_momentum", "true_feet"):
             self.assertGreater(ways[way]["mpjpe_cm"], ways["true_all"]["mpjpe_cm"])
         self.assertGreater(ways["best"]["knee_deg"], ways["true_all"]["knee_deg"])

@@ -37,6 +37,7 @@ TEST(Reconstruction, ACertainRegressionDecidesAndIsLeftOutWithoutHands) {
   const Models models = MakeModels({WithRegression(world)}).value();
   Options options = world.AtRate();
   options.clean_up = false;
+  options.best.pelvis_sd_rad = 0;  // Certain of the pelvis, too.
   Reconstruction regressed = Reconstruction::Create(world.person, models, options).value();
   const Eigen::VectorXd t_pose = body::TPose(world.person.skeleton, world.person.landmarks);
   for (std::size_t i = 0; i < 460; ++i) regressed.Advance(world.inputs[i]);
@@ -72,6 +73,7 @@ TEST(Reconstruction, ALearnedPostureDecidesWhereTheMomentumIsLeftOut) {
   const Eigen::VectorXd t_pose = body::TPose(world.person.skeleton, world.person.landmarks);
   Options options = world.AtRate();
   options.clean_up = options.use_momentum = false;
+  options.best.pelvis_sd_rad = 0;  // Certain of the pelvis, too.
   double off_rad[2];
   for (const bool use : {false, true}) {
     options.use_posture = use;
