@@ -99,7 +99,7 @@ function(add_module name)
   endif()
   target_link_libraries(${name} ${scope} ${public_links})
   # The fuzzer follows what decodes; the rest runs as fast as in any build with sanitizers.
-  if(folder MATCHES "^(common|daemon/sensor|clients/relay|clients/skeleton|clients/web)(/|$)")
+  if(folder MATCHES "^(common|daemon/sensor|clients/relay|clients/skeleton|clients/stream|clients/web)(/|$)")
     if(FOOTING_FUZZ AND arg_SOURCES)
       target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
     endif()
