@@ -46,8 +46,7 @@ struct Roles {
       if (role == stream::DeviceRole::kUnspecified) {
         std::string known;
         for (const auto one : stream::kDeviceRoles) known += std::string(" ") + stream::Name(one);
-        return UsageError("--role " + text + ": there is no role \"" + name + "\"; there are" +
-                          known);
+        return UsageError("--role " + text + ": unknown role \"" + name + "\"; there are" + known);
       }
       if (equals == std::string::npos) {
         roles.in_turn.push_back(role);

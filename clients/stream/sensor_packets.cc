@@ -23,7 +23,7 @@ constexpr std::int64_t kHeartbeatNs = 500'000'000;
 
 /// Types of SlimeVR's packets.
 enum : std::uint32_t {
-  kHeartbeat = 0,
+  kServersHeartbeat = 1,
   kRotation = 1,
   kHandshake = 3,
   kAcceleration = 4,
@@ -145,7 +145,7 @@ void SensorPackets::TakeSlimeVr(const std::string& from, std::int64_t now_ns, By
   if (Sensor* sensor = Of(from); sensor && now_ns - sensor->heartbeat_ns >= kHeartbeatNs) {
     // A tracker that hears nothing begins again.
     sensor->heartbeat_ns = now_ns;
-    packet.replies.push_back(BigEndian(1) + std::string(8, '\0'));
+    packet.replies.push_back(BigEndian(kServersHeartbeat) + std::string(8, '\0'));
   }
   if (type != kBundle && type != kShortBundle) {
     return TakeSlimeVrPart(from, now_ns, type, rest, packet);
@@ -200,7 +200,7 @@ void SensorPackets::Turn(const std::string& name, std::int64_t now_ns, const Qua
   if (sensor == nullptr) return;
   if (acceleration_mps2) sensor->acceleration_mps2 = *acceleration_mps2;
   auto& rotations = sensor->rotations;
-  rotations[now_ns] = sensor->R_WS = R_WS;
+  rotations[now_ns] = R_WS;
   // The newest one that is older than the window is its beginning.
   while (rotations.size() > 2 && std::next(rotations.begin())->first <= now_ns - kRateWindowNs) {
     rotations.erase(rotations.begin());

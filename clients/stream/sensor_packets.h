@@ -51,7 +51,6 @@ class SensorPackets {
   struct Sensor {
     std::uint16_t number = 0;  ///< Number of its last report.
     std::uint8_t battery_percent = 255;
-    Eigen::Quaterniond R_WS = Eigen::Quaterniond::Identity();
     std::map<std::int64_t, Eigen::Quaterniond> rotations;         ///< Those of the window, by time.
     Eigen::Vector3d acceleration_mps2 = Eigen::Vector3d::Zero();  ///< Without gravity.
     std::optional<Eigen::Vector3d> gravity_g;                     ///< Downwards.

@@ -106,7 +106,7 @@ void FoxgloveFeed::Subscribe(std::uint32_t id, std::uint32_t channel) {
     if (!known.newest.empty()) subscription.waiting.push_back(known.newest);
     return;
   }
-  Status("there is no channel " + std::to_string(channel));
+  Status("unknown channel " + std::to_string(channel));
 }
 
 void FoxgloveFeed::Status(const std::string& words) {
