@@ -60,16 +60,10 @@ bool Touches(const CharacterPose& pose, int contact) {
          pose.contacts[static_cast<std::size_t>(contact)].touching;
 }
 
-/// x'' = w^2 (goal - x) - 2 damping w x', stepped exactly for damping below 1 or of 1.
-void Step(Sprung& spring, double goal, double w_radps, double damping, double dt_s) {
+/// x'' = w^2 (goal - x) - 2 damping w x', stepped exactly for damping below 1.
+void Step(Spring& spring, double goal, double w_radps, double damping, double dt_s) {
   const double x = spring.value - goal, v = spring.rate, decay = damping * w_radps;
   const double fade = std::exp(-decay * dt_s);
-  if (damping >= 1) {
-    const double slope = v + w_radps * x;
-    spring.value = goal + fade * (x + slope * dt_s);
-    spring.rate = fade * (v - w_radps * slope * dt_s);
-    return;
-  }
   const double wd = w_radps * std::sqrt(1 - damping * damping);
   const double c = std::cos(wd * dt_s), s = std::sin(wd * dt_s);
   spring.value = goal + fade * (x * c + (v + decay * x) / wd * s);
@@ -84,7 +78,7 @@ double BobM(double speed_mps) {
 }
 
 void MoveHead(double speed_mps, bool touchdown, double dt_s, BirdMotion& motion) {
-  Sprung& ahead = motion.head_ahead;
+  Spring& ahead = motion.head_ahead;
   const double most_m = BobM(speed_mps);
   if (touchdown) motion.head_rests = false;
   if (motion.head_rests) {
@@ -92,7 +86,7 @@ void MoveHead(double speed_mps, bool touchdown, double dt_s, BirdMotion& motion)
     ahead = {std::max(ahead.value - speed_mps * dt_s, -most_m), -speed_mps};
     return;
   }
-  Step(ahead, most_m, kThrustRadps, 1, dt_s);
+  ahead.Advance(most_m, kThrustRadps, dt_s);
   if (most_m > 0.01 && ahead.value >= kThrown * most_m) motion.head_rests = true;
 }
 
@@ -101,7 +95,7 @@ void MoveTail(const Eigen::Vector3d& acceleration_mps2, double turn_radps, doubl
   const double g = std::clamp(acceleration_mps2.z(), -kMostMps2, kMostMps2) / kStandardGravityMps2;
   Step(motion.tail_pitch, -kTailRadPerG * g, kTailRadps, kTailDamping, dt_s);
   Step(motion.tail_yaw, kTailRadPerRadps * turn_radps, kTailRadps, kTailDamping, dt_s);
-  for (Sprung* tail : {&motion.tail_pitch, &motion.tail_yaw}) {
+  for (Spring* tail : {&motion.tail_pitch, &motion.tail_yaw}) {
     tail->value = std::clamp(tail->value, -kMostTailRad, kMostTailRad);
   }
 }

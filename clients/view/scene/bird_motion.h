@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "clients/view/scene/camera.h"
 #include "clients/view/scene/update.h"
 
 namespace footing::scene {
@@ -18,11 +19,6 @@ struct BirdSkeleton {
 /// Finds the parts by name; those missing keep the usual order.
 BirdSkeleton FindParts(const stream::Skeleton& skeleton);
 
-/// A damped spring: where it is and how fast.
-struct Sprung {
-  double value = 0, rate = 0;
-};
-
 /// Cosmetic motion of the bird over the poses of the simulation: a copyable value.
 ///
 /// While it walks the head rests in space and is then thrust ahead, once a step, as pigeons' heads
@@ -36,9 +32,9 @@ struct BirdMotion {
   double head_pitch_rad = 0;  ///< Positive looks up.
   double head_lift_m = 0;     ///< Head above its place on the body, at most 0.10 m either way.
   double body_height_m = 0;
-  Sprung head_ahead;            ///< Head before its place on the body, m, by bobbing.
+  Spring head_ahead;            ///< Head before its place on the body, m, by bobbing.
   bool head_rests = false;      ///< In space; otherwise it is thrust ahead.
-  Sprung tail_pitch, tail_yaw;  ///< The tail's, against the body, rad; up and left are positive.
+  Spring tail_pitch, tail_yaw;  ///< The tail's, against the body, rad; up and left are positive.
   std::array<double, 2> toe_spread{0, 0};       ///< 0 folded, 1 spread: 1 while the foot touches.
   double wing_spread = 0;                       ///< 1 while neither foot touches; less for balance.
   double lid = 0;                               ///< 0 open, 1 closed.

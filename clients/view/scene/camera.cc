@@ -66,7 +66,7 @@ Eigen::Matrix4f Camera::Projection(double aspect) const {
   return P.cast<float>();
 }
 
-void ChaseCamera::Spring::Advance(double goal, double frequency_radps, double dt_s) {
+void Spring::Advance(double goal, double frequency_radps, double dt_s) {
   // Critically damped: with e = x - goal, e(t) = (e0 + (v0 + w e0) t) exp(-w t).
   const double error = value - goal;
   const double slope = rate + frequency_radps * error;

@@ -37,6 +37,13 @@ struct Subject {
   double speed_mps = 0;
 };
 
+/// A critically damped spring, x'' = w^2 (goal - x) - 2 w x', stepped exactly.
+struct Spring {
+  double value = 0;
+  double rate = 0;
+  void Advance(double goal, double frequency_radps, double dt_s);
+};
+
 /// A chase camera: 4.5 m behind and 1.5 m above, on critically damped springs, never rolling. Its
 /// look-ahead grows with speed.
 class ChaseCamera {
@@ -47,13 +54,6 @@ class ChaseCamera {
   Camera Look() const;
 
  private:
-  /// x'' = w^2 (goal - x) - 2 w x', stepped exactly.
-  struct Spring {
-    double value = 0;
-    double rate = 0;
-    void Advance(double goal, double frequency_radps, double dt_s);
-  };
-
   void Place(const Subject& subject);
 
   bool placed_ = false;
