@@ -21,6 +21,9 @@ constexpr std::uint8_t kReportId = 1, kHasRate = 2;
 constexpr std::int64_t kRateLastsNs = 200'000'000;
 constexpr std::int64_t kHeartbeatNs = 500'000'000;
 
+/// No sensor measures more, in any of the units; what follows from it stays finite.
+constexpr double kMostMeasured = 1e4;
+
 /// Types of SlimeVR's packets.
 enum : std::uint32_t {
   kServersHeartbeat = 1,
@@ -36,6 +39,10 @@ enum : std::uint32_t {
   kShortBundle = 101,
 };
 constexpr std::size_t kSlimeVrHead = 12;
+
+/// Ends of the OSC addresses.
+constexpr std::array<std::string_view, 5> kOscNames = {"/gyroscope", "/gyro", "/gravity",
+                                                       "/accelerometer", "/accel"};
 
 /// A number in network order.
 template <typename Value>
@@ -61,13 +68,16 @@ void Append(const Vector3d& value, std::vector<std::uint8_t>& to) {
   for (const double part : value) Append(static_cast<float>(part), to);
 }
 
-/// Three finite floats; nothing otherwise.
+/// Nothing for a value that no sensor measures, NaN among them.
+std::optional<Vector3d> Measured(const Vector3d& value) {
+  if (!(value.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMostMeasured)) return std::nullopt;
+  return value;
+}
+
 std::optional<Vector3d> ReadVector(Bytes bytes, std::size_t at) {
   if (bytes.size() < at + 12) return std::nullopt;
-  const Vector3d value(ReadBig<float>(bytes, at), ReadBig<float>(bytes, at + 4),
-                       ReadBig<float>(bytes, at + 8));
-  if (!value.allFinite()) return std::nullopt;
-  return value;
+  return Measured(
+      {ReadBig<float>(bytes, at), ReadBig<float>(bytes, at + 4), ReadBig<float>(bytes, at + 8)});
 }
 
 /// x, y, z, w as floats; nothing where that is not a rotation.
@@ -92,8 +102,7 @@ std::optional<Vector3d> ThreeNumbers(std::span<const osc::Argument> arguments) {
       return std::nullopt;
     }
   }
-  if (!value.allFinite()) return std::nullopt;
-  return value;
+  return Measured(value);
 }
 
 bool IsReport(Bytes bytes) {
@@ -108,9 +117,13 @@ std::string NameOf(const std::string& from, int sensor) {
 
 }  // namespace
 
-SensorPackets::Sensor* SensorPackets::Of(const std::string& sensor) {
+SensorPackets::Sensor* SensorPackets::Known(const std::string& sensor) {
   const auto known = sensors_.find(sensor);
-  if (known != sensors_.end()) return &known->second;
+  return known == sensors_.end() ? nullptr : &known->second;
+}
+
+SensorPackets::Sensor* SensorPackets::Of(const std::string& sensor) {
+  if (Sensor* known = Known(sensor)) return known;
   if (sensors_.size() >= kMostSensors) return nullptr;
   return &sensors_[sensor];
 }
@@ -142,11 +155,6 @@ void SensorPackets::TakeSlimeVr(const std::string& from, std::int64_t now_ns, By
   }
   if (bytes.size() < kSlimeVrHead) return;
   const Bytes rest = bytes.subspan(kSlimeVrHead);
-  if (Sensor* sensor = Of(from); sensor && now_ns - sensor->heartbeat_ns >= kHeartbeatNs) {
-    // A tracker that hears nothing begins again.
-    sensor->heartbeat_ns = now_ns;
-    packet.replies.push_back(BigEndian(kServersHeartbeat) + std::string(8, '\0'));
-  }
   if (type != kBundle && type != kShortBundle) {
     return TakeSlimeVrPart(from, now_ns, type, rest, packet);
   }
@@ -179,11 +187,11 @@ void SensorPackets::TakeSlimeVrPart(const std::string& from, std::int64_t now_ns
     if (!(std::abs(turned.norm() - 1) < 0.1)) return;
     Turn(NameOf(from, id), now_ns, turned.normalized(), Vector3d(v[4], v[5], v[6]) / 128, packet);
   } else if (type == kAcceleration) {
-    Sensor* sensor = Of(NameOf(from, bytes.size() > 12 ? bytes[12] : 0));
+    Sensor* sensor = Known(NameOf(from, bytes.size() > 12 ? bytes[12] : 0));
     const auto acceleration = ReadVector(bytes, 0);
     if (sensor && acceleration) sensor->acceleration_mps2 = *acceleration;
   } else if (type == kBattery && bytes.size() >= 8) {
-    Sensor* sensor = Of(from);
+    Sensor* sensor = Known(from);
     const auto level = ReadBig<float>(bytes, 4);
     if (sensor && level >= 0 && level <= 1) {
       sensor->battery_percent = static_cast<std::uint8_t>(std::lround(100 * level));
@@ -215,6 +223,11 @@ void SensorPackets::Turn(const std::string& name, std::int64_t now_ns, const Qua
   } else if (window_s >= 0.5) {
     rotations = {{now_ns, R_WS}};
   }
+  if (now_ns - sensor->heartbeat_ns >= kHeartbeatNs) {
+    // A tracker that hears nothing begins again.
+    sensor->heartbeat_ns = now_ns;
+    packet.replies.push_back(BigEndian(kServersHeartbeat) + std::string(8, '\0'));
+  }
   const Vector3d up_mps2(0, 0, kStandardGravityMps2);
   Add(name, *sensor, now_ns, R_WS.conjugate() * up_mps2 + sensor->acceleration_mps2, has_rate,
       packet);
@@ -225,10 +238,11 @@ void SensorPackets::TakeOsc(const std::string& from, std::int64_t now_ns, Bytes 
   if (!osc::Read(bytes, osc_)) return;
   packet.is_known = true;
   for (const osc::Message& message : osc_.messages) {
-    const auto value = ThreeNumbers(osc_.Of(message));
-    Sensor* sensor = value ? Of(from) : nullptr;
-    if (sensor == nullptr) continue;
     const std::string_view what = message.address.substr(message.address.rfind('/'));
+    const auto value = ThreeNumbers(osc_.Of(message));
+    if (!value || std::ranges::find(kOscNames, what) == kOscNames.end()) continue;
+    Sensor* sensor = Of(from);
+    if (sensor == nullptr) continue;
     const bool has_rate = sensor->rate_ns > 0 && now_ns - sensor->rate_ns < kRateLastsNs;
     if (what == "/gyroscope" || what == "/gyro") {
       sensor->rate_radps = *value;

@@ -59,6 +59,9 @@ class SensorPackets {
     std::int64_t heartbeat_ns = 0;
   };
 
+  Sensor* Known(const std::string& sensor);
+  /// Known, or a new one where there is a place. For packets that carry a measurement: others
+  /// would take a place that nobody gives back.
   Sensor* Of(const std::string& sensor);
   void TakeSlimeVr(const std::string& from, std::int64_t now_ns, osc::Bytes bytes,
                    SensorPacket& packet);

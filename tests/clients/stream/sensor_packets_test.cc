@@ -127,13 +127,15 @@ TEST_F(SensorPacketsTest, RotationAndAccelerationInOnePacketAddUp) {
   Big packed;
   packed.Add(std::uint8_t{0});
   for (const int part : {0, 0, 0, 32767, 128, -256, 0}) packed.Add(static_cast<std::int16_t>(part));
+  auto packet = Take(SlimeVr(23, packed.bytes()));
+  ASSERT_EQ(packet.reports.size(), 1u);
+  EXPECT_FALSE(In(packet.reports[0]).has_rate) << "one rotation has none";
   Take(SlimeVr(12, Floats({3.9, 0.4})));
-  const auto packet = Take(SlimeVr(23, packed.bytes()));
+  packet = Take(SlimeVr(23, packed.bytes()));
   ASSERT_EQ(packet.reports.size(), 1u);
   const Sample sample = In(packet.reports[0]);
   EXPECT_LT((sample.specific_force_mps2 - Vector3d(1, -2, kStandardGravityMps2)).norm(), 1e-4);
   EXPECT_EQ(sample.battery_percent, 40);
-  EXPECT_FALSE(sample.has_rate) << "one rotation has none";
 }
 
 TEST_F(SensorPacketsTest, PhonesSendOverOsc) {
@@ -179,6 +181,31 @@ TEST_F(SensorPacketsTest, WhatIsNotFiniteOrCutGivesNothing) {
         std::string(2000, '\1')}) {
     EXPECT_TRUE(Take(bytes).reports.empty());
   }
+}
+
+TEST_F(SensorPacketsTest, ANumberThatNoSensorMeasuresGivesNothing) {
+  const auto say = [this](const std::string& address, float x) {
+    const osc::Argument arguments[] = {x, 0.0F, 0.0F};
+    return Take(osc::WriteMessage(address, arguments));
+  };
+  say("/phone/gravity", 0);
+  // Finite, and times g beyond what a float holds.
+  EXPECT_TRUE(say("/phone/accel", 1e38F).reports.empty());
+  say("/phone/gravity", -1e38F);
+  const auto packet = say("/phone/accel", 0);
+  ASSERT_EQ(packet.reports.size(), 1u);
+  EXPECT_EQ(In(packet.reports[0]).specific_force_mps2.x(), 0);
+}
+
+TEST_F(SensorPacketsTest, WhoMeasuresNothingTakesNoPlace) {
+  for (std::size_t i = 0; i < SensorPackets::kMostSensors; ++i) {
+    const std::string from = std::to_string(i);
+    Take(SlimeVr(0, ""), from);
+    Take(SlimeVr(4, Floats({0, 0, 9})), from);
+    Take(SlimeVr(12, Floats({3.9, 0.4})), from);
+    Take(osc::WriteMessage("/light", std::array<osc::Argument, 3>{1.0F, 1.0F, 1.0F}), from);
+  }
+  EXPECT_EQ(Take(SlimeVr(17, Rotation(0, Quaterniond::Identity())), "new").reports.size(), 1u);
 }
 
 TEST_F(SensorPacketsTest, SensorsAreBounded) {
