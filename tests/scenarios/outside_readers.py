@@ -22,7 +22,7 @@ def node_folder(work):
     """A folder with the scripts and their packages. One installation serves all tests of a build."""
     if shutil.which("node") is None or shutil.which("npm") is None:
         raise NoNode("node or npm is not installed")
-    work = pathlib.Path(work)
+    work = pathlib.Path(work).resolve()
     work.mkdir(parents=True, exist_ok=True)
     with open(work / "lock", "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -176,8 +176,11 @@ def check_bodies(stage, recording, work, with_forces):
     same(humanoid["joints"]["LeftFoot"], bvh["joints"]["lfoot"], 0.002, "both skeletons")
 
 
-def check_osc(stage, work, send):
-    """npm's osc understands every packet of `send(address)`, which returns the number of frames sent; and times rise."""
+def check_osc(work, send):
+    """npm's osc understands every packet of `send(address)`, which returns the number of frames sent; and times rise.
+
+    Returns the longest time between two frames, s.
+    """
     folder = node_folder(work)
     with subprocess.Popen(["node", folder / "receive_osc.mjs"], cwd=folder, stdout=subprocess.PIPE, text=True) as reader:
         try:
@@ -188,3 +191,4 @@ def check_osc(stage, work, send):
     assert not heard["errors"], heard["errors"]
     assert heard["seen"]["/VMC/Ext/T"]["count"] == frames and heard["seen"]["/VMC/Ext/T"]["rises"], (frames, heard)
     assert heard["seen"]["/VMC/Ext/Bone/Pos"]["types"] == "sfffffff", heard["seen"]
+    return heard["seen"]["/VMC/Ext/T"]["largest_step"]

@@ -1,6 +1,7 @@
 """Records both servers live: ended by SIGINT the file is complete; killed it lacks a second at most.
 
-Usage: record_scenario.py SCENARIOS_FOLDER BINARY_FOLDER NODE_FOLDER
+Usage: record_scenario.py SCENARIOS_FOLDER BINARY_FOLDER NODE_FOLDER [SECONDS]
+With SECONDS it measures what footing-log osc sends meanwhile.
 """
 import select
 import signal
@@ -90,14 +91,29 @@ def check_osc(stage):
                 assert all(abs(sum(v * v for v in bone[3:]) - 1) < 1e-5 for bone in bones.values()), bones
 
 
+def sender(stage, rate_hz, seconds):
+    return lambda to: stage.run_json("footing-log", "osc", "--connect", stage.simulation, "--to", to, "--rate-hz", rate_hz,
+                                     "--seconds", seconds, timeout_s=seconds + 60)["frames"]
+
+
 def check_outside_readers(stage, recording, node):
     """The biped in every format of bodies, and as an avatar's packets."""
     try:
         outside_readers.check_bodies(stage, recording, node, with_forces=False)
-        outside_readers.check_osc(stage, node, lambda to: stage.run_json(
-            "footing-log", "osc", "--connect", stage.simulation, "--to", to, "--rate-hz", 50, "--seconds", 2)["frames"])
+        outside_readers.check_osc(node, sender(stage, 50, 2))
     except outside_readers.NoNode as error:
         print(f"not checked by readers of others: {error}")
+
+
+def measure(seconds):
+    """The packets of a long walk, at footing-log's own rate, received by npm's osc."""
+    rate_hz = 60
+    with Stage(sys.argv[2]) as stage:
+        stage.start_servers()
+        stage.start("footing-stream", "user", "--interface", "wrist", "--see", stage.simulation, "--to", stage.devices)
+        longest_s = outside_readers.check_osc(sys.argv[3], sender(stage, rate_hz, seconds))
+    print(f"{seconds} s: no error, no frame lost, longest time between two {1e3 * longest_s:.1f} ms, "
+          f"{longest_s * rate_hz:.2f} periods")
 
 
 def main():
@@ -146,4 +162,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    measure(int(sys.argv[4])) if len(sys.argv) > 4 else main()
