@@ -7,7 +7,6 @@
 #include "clients/skeleton/receiver.h"
 #include "clients/skeleton/sender.h"
 #include "clients/skeleton/tracking/synthetic_clip.h"
-#include "clients/skeleton/web_server.h"
 #include "common/base/json_text.h"
 #include "common/base/units.h"
 #include "common/cli/cli.h"
@@ -93,15 +92,11 @@ struct ReceiverFlags {
       options.to = *address;
     }
     if (!web.empty()) {
-      const auto page = transport::ParseAddress("tcp:" + web);
-      if (!page || !transport::StaysOnThisHost(*page)) {
-        return UsageError("--web " + web +
-                          ": must be 127.0.0.1:PORT; browsers give webcams to pages of their own "
-                          "host only");
-      }
-      options.web = *page;
+      return UsageError("--web " + web +
+                        ": footing-web serves the webcam's page now; start footing-skeleton "
+                        "without --web, and beside it: footing-web --listen tcp:" +
+                        web + ", then open http://" + web + "/webcam");
     }
-    options.pose_package = pose_package;
     options.tracker.stand = camera_m.empty();
     if (!camera_m.empty()) options.tracker.camera.p_W_m = Eigen::Vector3d::Map(camera_m.data());
     options.tracker.camera.yaw_rad = DegreesToRadians(yaw_deg);
@@ -123,12 +118,8 @@ std::function<void()> AddReceiver(CLI::App& app, Shared& shared) {
   app.add_option("--listen", flags->listen,
                  "UDP address to receive on, HOST:PORT; 0.0.0.0:7110 takes every host's packets");
   app.add_option("--to", flags->to, device_link::kToHelp);
-  app.add_option(
-      "--web", flags->web,
-      "Serve a web page that tracks a person with this computer's webcam, 127.0.0.1:PORT");
-  flags->pose_package = DefaultPosePackage();
-  app.add_option("--pose-package", flags->pose_package,
-                 "Folder of npm's @mediapipe/pose, of --web (scripts/fetch-pose-model)");
+  app.add_option("--web", flags->web, "Moved: footing-web serves the page for a webcam");
+  app.add_option("--pose-package", flags->pose_package)->group("");  // Goes with --web.
   app.add_flag("--no-publish", flags->no_publish, "Receive and check only");
   app.add_option("--user", flags->user, "Person to publish (default: the first one)");
   app.add_option(

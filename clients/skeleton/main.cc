@@ -6,12 +6,11 @@ int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-skeleton",
       "Receives skeletons of people by OSC (OSCeleton, KinectV2-OSC and others, VMC) and publishes "
-      "their joints on footingd's device socket. With --web it serves a page that tracks a person "
-      "with a webcam.",
+      "their joints on footingd's device socket. A webcam's joints come from the page of "
+      "footing-web.",
       "  footing-skeleton                                # port 7110 of this host\n"
       "  footing-skeleton --listen 0.0.0.0:7110 --camera-m 2.4,0,1.1 --camera-pitch-deg -5\n"
       "  footing-skeleton --listen 0.0.0.0:12345         # KinectV2-OSC on another computer\n"
-      "  footing-skeleton --web 127.0.0.1:7180           # open that page, choose the webcam\n"
       "  footing-skeleton --no-publish --seconds 10 --json   # is what arrives plausible?\n"
       "  footing-skeleton send --seconds 60              # a synthetic person\n"
       "  footing-skeleton send wave.csv --dialect sensebloom");

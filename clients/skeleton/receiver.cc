@@ -12,7 +12,6 @@
 #include <boost/asio/ip/address.hpp>
 
 #include "clients/skeleton/sender.h"
-#include "clients/skeleton/web_server.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/net/device_link.h"
@@ -29,7 +28,6 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kFlush = std::chrono::milliseconds(10);
-constexpr auto kPagesLeave = std::chrono::milliseconds(100);
 constexpr int kMostAtOnce = 64;  // Packets before the other work of this thread has its turn.
 constexpr std::int64_t kQuietNs = 10'000'000'000;  // Between two lines on dropped packets.
 constexpr std::size_t kMaxQueuedFrames = 64;       // Queue to footingd.
@@ -63,7 +61,6 @@ class Receiver {
     const auto at = socket_.local_endpoint(error);
     log::Info("listening for skeletons on UDP " + at.address().to_string() + ":" +
               std::to_string(at.port()));
-    if (const auto served = Serve(); !served) return served.error();
     if (link_) link_->Start();
     began_ns_ = clock::MonotonicNs();
     began_cpu_ns_ = clock::ThreadCpuNs();
@@ -81,9 +78,7 @@ class Receiver {
     cost.published = published_skeletons_;
     cost.hand_frames = link_ ? link_->sent() : 0;
     cost.dropped_hand_frames = link_ ? link_->dropped() : 0;
-    auto json = ToJson(tracker_, cost);
-    if (web_) json["web"] = ToJson(web_->counts());
-    return Reception{std::move(json), std::move(published_)};
+    return Reception{ToJson(tracker_, cost), std::move(published_)};
   }
 
  private:
@@ -103,25 +98,6 @@ class Receiver {
       if (error) return;  // No packet is waiting.
       TakePacket({bytes_.data(), size});
     }
-  }
-
-  Result<void> Serve() {
-    if (!options_.web) return {};
-    auto server = WebServer::Open(
-        io_, {.listen = *options_.web,
-              .package = options_.pose_package,
-              .on_packet = [this](osc::Bytes packet) { TakePacket(packet); },
-              .on_state = [](const std::string& line) { log::Info("page: " + line); }});
-    if (!server) return server.error();
-    web_ = std::move(*server);
-    log::Info("page for a webcam: http://" + web_->address().Text().substr(sizeof("tcp:") - 1));
-    if (!ModelFile(options_.pose_package, "pose.js")) {
-      log::Warning("the page has no pose model: @mediapipe/pose is not in " +
-                   options_.pose_package +
-                   "; run scripts/fetch-pose-model, or name its folder with "
-                   "--pose-package");
-    }
-    return {};
   }
 
   void TakePacket(osc::Bytes packet) {
@@ -167,9 +143,6 @@ class Receiver {
     flush_.cancel();
     end_.cancel();
     if (link_) link_->Stop("stopped");
-    if (!web_) return;
-    // Pages stay connected for as long as they are shown.
-    flush_.After(kPagesLeave, [this] { io_.stop(); });
   }
 
   const ReceiverOptions options_;
@@ -179,7 +152,6 @@ class Receiver {
   asio::ip::udp::socket socket_;
   timer::Timer flush_;
   std::optional<device_link::DeviceLink> link_;
-  std::unique_ptr<WebServer> web_;
   std::array<std::uint8_t, osc::kMostPacketBytes> bytes_;
   std::vector<Observation> observations_;
   /// A tenth of a second at once.

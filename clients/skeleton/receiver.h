@@ -16,11 +16,9 @@ namespace footing::skeleton {
 struct ReceiverOptions {
   TrackerOptions tracker;
   boost::asio::ip::udp::endpoint listen;
-  std::optional<transport::Address> to;   ///< footingd's device socket; none: nothing is published.
-  std::optional<transport::Address> web;  ///< Serves a page with a pose model there.
-  std::string pose_package;               ///< The folder of npm's `@mediapipe/pose`.
-  double seconds = 0;                     ///< Ends by itself after this; 0: by SIGINT or SIGTERM.
-  double most_packets_per_s = 50'000;     ///< More are dropped unread.
+  std::optional<transport::Address> to;  ///< footingd's device socket; none: nothing is published.
+  double seconds = 0;                    ///< Ends by itself after this; 0: by SIGINT or SIGTERM.
+  double most_packets_per_s = 50'000;    ///< More are dropped unread.
 };
 
 /// Result of a receiver's run.

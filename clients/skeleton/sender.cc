@@ -147,14 +147,6 @@ ordered_json ToJson(const Tracker& tracker, const Cost& cost) {
   return json;
 }
 
-ordered_json ToJson(const WebCounts& web) {
-  return {{"pages", web.pages},
-          {"frames", web.frames},
-          {"found", web.found},
-          {"packets", web.packets},
-          {"refused", web.refused}};
-}
-
 std::string ToText(const ordered_json& json) {
   std::string text = json["packets"].dump() + " packets, " + json["skeletons"].dump() +
                      " skeletons, " + json["hand_frames"].dump() + " frames of hands sent\n";

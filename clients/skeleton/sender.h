@@ -10,7 +10,6 @@
 #include "clients/skeleton/tracking/dialects.h"
 #include "clients/skeleton/tracking/synthetic_clip.h"
 #include "clients/skeleton/tracking/tracker.h"
-#include "clients/skeleton/web_server.h"
 #include "common/base/result.h"
 
 namespace footing::skeleton {
@@ -42,9 +41,6 @@ struct Cost {
 
 /// The statistics of a run: docs/skeleton.md lists the fields.
 nlohmann::ordered_json ToJson(const Tracker& tracker, const Cost& cost);
-
-/// Counts of the page, as JSON.
-nlohmann::ordered_json ToJson(const WebCounts& web);
 
 /// Statistics as a few lines of text.
 std::string ToText(const nlohmann::ordered_json& statistics);

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -23,9 +24,10 @@ namespace {
 
 struct ServeFlags {
   std::vector<std::string> listen, connect, host_names, origins;
-  std::string devices, token_file, identity_file;
+  std::string devices, token_file, identity_file, pose_package;
+  std::uint16_t skeleton_port = WebOptions().skeleton_port;
   double seconds = 0;
-  bool foxglove = false, invite = false, phones = false, json = false;
+  bool foxglove = false, invite = false, phones = false, webcam = false, json = false;
 
   Result<WebOptions> Options() const {
     WebOptions options;
@@ -50,6 +52,8 @@ struct ServeFlags {
       return UsageError("--devices " + devices + ": must be footingd's unix:PATH on this host");
     }
     options.devices = *to;
+    options.skeleton_port = skeleton_port;
+    options.pose_package = pose_package;
     if (!token_file.empty()) {
       const auto token = transport::ReadTokenFile(token_file);
       if (!token) return token.error();
@@ -85,13 +89,14 @@ class Doorkeeper {
 
  private:
   void Show() {
-    if (flags_.invite || !flags_.phones) Print("Live page", Right::kView);
-    if (flags_.phones) Print("A phone as a controller", Right::kDevices);
-    if (flags_.invite || flags_.phones) Wait();
+    if (flags_.invite || !(flags_.phones || flags_.webcam)) Print("Live page", "/");
+    if (flags_.phones) Print("A phone as a controller", "/phone");
+    if (flags_.webcam) Print("A webcam", "/webcam");
+    if (flags_.invite || flags_.phones || flags_.webcam) Wait();
   }
 
-  void Print(const std::string& title, Right right) {
-    const std::string address = server_.Invite(right);
+  void Print(const std::string& title, std::string_view page) {
+    const std::string address = server_.Invite(page);
     std::cout << title << ": " << address << "\n" << qr::QrCode(address) << std::flush;
   }
 
@@ -121,8 +126,9 @@ int Serve(const ServeFlags& flags) {
     nlohmann::ordered_json listening = nlohmann::ordered_json::array();
     for (const auto& address : (*server)->addresses()) listening.push_back(address.Text());
     std::cout << nlohmann::ordered_json{{"listening_on", listening},
-                                        {"page", (*server)->Invite(Right::kView)},
-                                        {"phone", (*server)->Invite(Right::kDevices)}}
+                                        {"page", (*server)->Invite("/")},
+                                        {"phone", (*server)->Invite("/phone")},
+                                        {"webcam", (*server)->Invite("/webcam")}}
               << std::endl;
   }
   Doorkeeper doorkeeper(io, **server, flags);
@@ -160,6 +166,13 @@ std::function<int()> AddServe(CLI::App& app) {
                  "https://app.foxglove.dev; may be repeated");
   app.add_flag("--invite", flags->invite, "Show a QR code of the live page for each browser");
   app.add_flag("--phones", flags->phones, "Show a QR code for each phone that is a controller");
+  app.add_flag("--webcam", flags->webcam,
+               "Show a QR code of the page that tracks a person with a webcam");
+  app.add_option("--skeleton-port", flags->skeleton_port,
+                 "UDP port of footing-skeleton on this host, which takes a webcam's joints");
+  flags->pose_package = DefaultPosePackage();
+  app.add_option("--pose-package", flags->pose_package,
+                 "Folder of npm's @mediapipe/pose, for webcams (scripts/fetch-pose-model)");
   app.add_option("--seconds", flags->seconds, "Duration, s (0: until SIGINT or SIGTERM)")
       ->check(CLI::Range(0.0, 1e9));
   app.add_flag("--json", flags->json, "Print the addresses as one JSON object");
@@ -177,6 +190,7 @@ int main(int argc, char** argv) {
       "  footing-web                                   # http://127.0.0.1:7480/ on this host\n"
       "  footing-web --listen tls:192.168.1.5:7480 --invite    # a QR code for other devices\n"
       "  footing-web --listen tls:192.168.1.5:7480 --phones    # a QR code for each phone\n"
+      "  footing-skeleton & footing-web                # http://127.0.0.1:7480/webcam: a webcam\n"
       "  footing-web --foxglove                        # in Foxglove open ws://127.0.0.1:7480\n"
       "  footing-web --connect unix:/run/footing/simulation.sock --json");
   const auto serve = footing::web::AddServe(*app);

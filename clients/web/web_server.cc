@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <map>
 #include <random>
 #include <span>
 #include <utility>
 
+#include <boost/asio/ip/udp.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -15,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/web/foxglove_feed.h"
+#include "common/base/osc.h"
 #include "common/base/text.h"
 #include "common/cli/cli.h"
 #include "common/net/access.h"
@@ -53,6 +56,16 @@ constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+constexpr const char* kPermissions = "accelerometer=(self), gyroscope=(self), camera=()";
+/// For the page with the pose model, whose own code makes functions out of text and compiles
+/// WebAssembly.
+constexpr const char* kWebcamPolicy =
+    "default-src 'self' data: blob:; script-src 'self' 'unsafe-eval' blob:; worker-src 'self' "
+    "blob:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors "
+    "'none'";
+constexpr const char* kWebcamPermissions = "camera=(self)";
+constexpr std::string_view kModelPrefix = "/pose/";
+constexpr std::int64_t kSkeletonsLostNs = 1'000'000'000;
 
 /// Letters and digits that nobody mistakes for each other, 100 bits.
 std::string Secret() {
@@ -476,6 +489,85 @@ class FoxgloveSocket : public std::enable_shared_from_this<FoxgloveSocket> {
   bool over_ = false;
 };
 
+/// The page for a webcam: each binary message is an OSC packet, which goes on to footing-skeleton;
+/// what is wrong there goes back as text.
+class SkeletonSocket : public std::enable_shared_from_this<SkeletonSocket> {
+ public:
+  SkeletonSocket(Stream stream, std::shared_ptr<Desk> desk, http_server::Place place)
+      : page_(std::move(stream)),
+        desk_(std::move(desk)),
+        place_(std::move(place)),
+        out_(desk_->io) {}
+
+  void Start(const Request& request) {
+    page_.set_option(websocket::stream_base::timeout{std::chrono::seconds(5), kIdle, true});
+    page_.read_message_max(osc::kMostPacketBytes);
+    page_.async_accept(request, [self = shared_from_this()](const error_code& error) {
+      if (error || self->desk_->closed) return;
+      ++self->desk_->counts.connections;
+      error_code failed;
+      self->out_.connect({asio::ip::address_v4::loopback(), self->desk_->options.skeleton_port},
+                         failed);
+      self->Read();
+    });
+  }
+
+ private:
+  void Read() {
+    page_.async_read(from_page_, [self = shared_from_this()](const error_code& error, std::size_t) {
+      if (error || self->desk_->closed) return;
+      if (self->page_.got_binary()) self->Forward();
+      self->from_page_.consume(self->from_page_.size());
+      self->Read();
+    });
+  }
+
+  /// Where nobody listens, only every other packet says so.
+  void Forward() {
+    const std::int64_t now_ns = clock::MonotonicNs();
+    error_code error;
+    out_.send(from_page_.cdata(), 0, error);
+    if (error) lost_ns_ = now_ns;
+    const bool lost = lost_ns_ != 0 && now_ns - lost_ns_ < kSkeletonsLostNs;
+    if (writes_ || lost == said_lost_) return;
+    said_lost_ = lost;
+    to_page_ = lost ? "footing-skeleton does not listen at UDP port " +
+                          std::to_string(desk_->options.skeleton_port) + " of this host: start it"
+                    : "";
+    writes_ = true;
+    page_.text(true);
+    page_.async_write(
+        asio::buffer(to_page_),
+        [self = shared_from_this()](const error_code&, std::size_t) { self->writes_ = false; });
+  }
+
+  websocket::stream<Stream> page_;
+  std::shared_ptr<Desk> desk_;
+  const http_server::Place place_;
+  asio::ip::udp::socket out_;
+  boost::beast::flat_buffer from_page_;
+  std::string to_page_;
+  std::int64_t lost_ns_ = 0;  ///< When a packet was refused last.
+  bool said_lost_ = false, writes_ = false;
+};
+
+/// The right that a page needs.
+Right RightFor(std::string_view page, bool secure) {
+  if (page == "/phone") return Right::kDevices;
+  // On this host everybody can send to footing-skeleton without a page.
+  if (page == "/webcam") return secure ? Right::kDevices : Right::kView;
+  return Right::kView;
+}
+
+/// The file of that name in the pose model's package; empty where the name is not that of a file
+/// directly in it.
+std::filesystem::path ModelFile(const std::filesystem::path& package, std::string_view name) {
+  if (name.empty() || name[0] == '.' || name.find('/') != std::string_view::npos) return {};
+  std::error_code error;
+  const std::filesystem::path path = package / name;
+  return std::filesystem::is_regular_file(path, error) ? path : std::filesystem::path();
+}
+
 /// One listener's view of the desk.
 class Reception {
  public:
@@ -495,6 +587,7 @@ class Reception {
       return Refuse(http::status::method_not_allowed, "there are GET and POST\n");
     }
     if (target == "/about.json") return About(*request);
+    if (target.starts_with(kModelPrefix)) return Model(*request, target);
     return File(*request, target);
   }
 
@@ -507,6 +600,10 @@ class Reception {
       return true;
     }
     if (!IsOwnOrigin(request)) return false;
+    if (PathOf(request) == "/skeleton" && MayTrack(request)) {
+      std::make_shared<SkeletonSocket>(std::move(stream), desk_, place)->Start(request);
+      return true;
+    }
     const auto socket = SocketOf(request);
     if (!socket || RightOf(request) < socket->needs) return false;
     std::make_shared<Bridge>(std::move(stream), desk_, place, socket->address, socket->carries)
@@ -548,6 +645,21 @@ class Reception {
     const std::string_view pass = CookieIn(request[http::field::cookie], kCookie);
     return std::max(desk_->passes.RightOf(pass, clock::MonotonicNs()),
                     secure_ ? Right::kNone : Right::kView);
+  }
+
+  /// How a browser gets more rights.
+  std::string NeedsCode(const Request& request) const {
+    const std::string_view pass = CookieIn(request[http::field::cookie], kCookie);
+    const bool had =
+        !pass.empty() && desk_->passes.RightOf(pass, clock::MonotonicNs()) == Right::kNone;
+    return (had ? "footing-web was restarted or 12 hours have passed, so this browser needs a new "
+                  "code"
+                : std::string("this browser needs a code")) +
+           ": scan the QR code that footing-web shows";
+  }
+
+  bool MayTrack(const Request& request) const {
+    return RightOf(request) >= RightFor("/webcam", secure_);
   }
 
   Answer Refuse(http::status status, const std::string& why) {
@@ -592,8 +704,10 @@ class Reception {
     if (!IsOwnOrigin(request)) {
       return Refuse(http::status::forbidden, "pages of other origins are refused\n");
     }
-    if (!SocketOf(request)) return Refuse(http::status::not_found, "there is no such socket\n");
-    return Refuse(http::status::forbidden, "this needs a code: scan the QR code of footing-web\n");
+    if (!SocketOf(request) && PathOf(request) != "/skeleton") {
+      return Refuse(http::status::not_found, "there is no such socket\n");
+    }
+    return Refuse(http::status::forbidden, NeedsCode(request) + "\n");
   }
 
   /// A code becomes a pass.
@@ -606,7 +720,7 @@ class Reception {
     const auto pass = desk_->passes.Redeem(request.body(), clock::MonotonicNs());
     if (!pass) {
       return Refuse(http::status::forbidden,
-                    "this code was used or is too old; scan the QR code again\n");
+                    "this code was used or is too old: scan the QR code again\n");
     }
     ++desk_->counts.codes_used;
     return {http::status::no_content,
@@ -622,8 +736,7 @@ class Reception {
   /// Reports of a phone whose browser opens no WebSocket.
   Answer PostDevices(const Request& request) {
     if (!desk_->options.devices || RightOf(request) < Right::kDevices) {
-      return Refuse(http::status::forbidden,
-                    "this needs a code: scan the QR code of footing-web\n");
+      return Refuse(http::status::forbidden, NeedsCode(request) + "\n");
     }
     const std::string pass(CookieIn(request[http::field::cookie], kCookie));
     std::shared_ptr<Mailbox>& mailbox = desk_->mailboxes[pass];
@@ -647,24 +760,44 @@ class Reception {
                                   {"servers", desk_->options.servers.size()},
                                   {"may_view", right >= Right::kView},
                                   {"may_attach", right >= Right::kDevices},
+                                  {"may_track", MayTrack(request)},
+                                  {"needs_code", NeedsCode(request)},
                                   {"devices", desk_->options.devices.has_value()}};
     return {http::status::ok, "application/json", about.dump() + "\n"};
   }
 
+  Answer Model(const Request& request, std::string_view target) {
+    const std::filesystem::path file =
+        MayTrack(request)
+            ? ModelFile(desk_->options.pose_package, target.substr(kModelPrefix.size()))
+            : std::filesystem::path();
+    if (file.empty()) {
+      return Refuse(http::status::not_found,
+                    "@mediapipe/pose has no such file; run scripts/fetch-pose-model\n");
+    }
+    const char* const type = file.extension() == ".js"     ? "text/javascript"
+                             : file.extension() == ".wasm" ? "application/wasm"
+                                                           : "application/octet-stream";
+    return {.type = type, .file = file};
+  }
+
   Answer File(const Request& request, std::string_view target) {
     target.remove_prefix(target.starts_with('/') ? 1 : 0);
-    const std::string_view name = target.empty()      ? "index.html"
-                                  : target == "phone" ? "phone.html"
-                                                      : target;
+    std::string name(target.empty() ? "index" : target);
+    if (name.find('.') == std::string::npos) name += ".html";
     const auto& files = PageFiles();
     const auto file = std::find_if(files.begin(), files.end(),
-                                   [name](const PageFile& one) { return one.name == name; });
+                                   [&name](const PageFile& one) { return one.name == name; });
     if (file == files.end()) return Refuse(http::status::not_found, "this page does not exist\n");
-    const http_server::Headers headers = {{"ETag", std::string(file->etag)},
-                                          {"Content-Encoding", "gzip"}};
-    if (request[http::field::if_none_match] == file->etag) {
-      return {http::status::not_modified, "", "", {}, {headers[0]}};
+    http_server::Headers headers = {{"ETag", std::string(file->etag)}};
+    if (name == "webcam.html") {
+      headers.insert(headers.end(), {{"Content-Security-Policy", kWebcamPolicy},
+                                     {"Permissions-Policy", kWebcamPermissions}});
     }
+    if (request[http::field::if_none_match] == file->etag) {
+      return {http::status::not_modified, "", "", {}, headers};
+    }
+    headers.emplace_back("Content-Encoding", "gzip");
     return {http::status::ok, std::string(file->type), std::string(file->gzip), {}, headers};
   }
 
@@ -701,12 +834,10 @@ Result<std::unique_ptr<http_server::Server>> Listen(const std::shared_ptr<Desk>&
   options.most_header_bytes = http_server::kMostHeaderBytes;
   options.most_body_bytes = kMostBodyBytes;
   options.next_within = std::chrono::seconds(10);
-  options.headers = {{"Cache-Control", "no-cache"},
-                     {"X-Content-Type-Options", "nosniff"},
-                     {"Referrer-Policy", "no-referrer"},
-                     {"Cross-Origin-Opener-Policy", "same-origin"},
-                     {"Permissions-Policy", "accelerometer=(self), gyroscope=(self), camera=()"},
-                     {"Content-Security-Policy", kPolicy}};
+  options.headers = {
+      {"Cache-Control", "no-cache"},        {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},   {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Permissions-Policy", kPermissions}, {"Content-Security-Policy", kPolicy}};
   options.answer = [reception](const Request* request) { return reception->AnswerTo(request); };
   options.upgrade = [reception](const Request& request, Stream& stream,
                                 const http_server::Place& place) {
@@ -738,7 +869,7 @@ WebServer::~WebServer() {
   desk_->servers.clear();
 }
 
-std::string WebServer::Invite(Right right) {
+std::string WebServer::Invite(std::string_view page) {
   // Beyond this host where it listens there: that is the one for a phone.
   transport::Address address = desk_->servers.front()->address();
   for (const auto& server : desk_->servers) {
@@ -746,11 +877,22 @@ std::string WebServer::Invite(Right right) {
   }
   const bool secure = address.kind == transport::Address::Kind::kTls;
   const bool is_v6 = address.host.find(':') != std::string::npos;
-  std::string page = (secure ? "https://" : "http://") +
-                     (is_v6 ? "[" + address.host + "]" : address.host) + ":" +
-                     std::to_string(address.port) + (right == Right::kDevices ? "/phone" : "/");
-  if (!secure && right < Right::kDevices) return page;
-  return page + "#" + desk_->passes.NewCode(right, clock::MonotonicNs());
+  const std::string url = (secure ? "https://" : "http://") +
+                          (is_v6 ? "[" + address.host + "]" : address.host) + ":" +
+                          std::to_string(address.port) + std::string(page);
+  const Right right = RightFor(page, secure);
+  if (!secure && right <= Right::kView) return url;
+  return url + "#" + desk_->passes.NewCode(right, clock::MonotonicNs());
+}
+
+std::filesystem::path DefaultPosePackage() {
+  const char* const data = std::getenv("XDG_DATA_HOME");
+  const char* const home = std::getenv("HOME");
+  const std::filesystem::path base =
+      data != nullptr && *data != '\0'
+          ? std::filesystem::path(data)
+          : std::filesystem::path(home != nullptr ? home : "/") / ".local/share";
+  return base / "footing/mediapipe-pose";
 }
 
 const WebCounts& WebServer::counts() const { return desk_->counts; }

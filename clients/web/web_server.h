@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,8 @@ struct WebOptions {
   std::vector<transport::Address> listen;     ///< tcp: of this host, tls: of any.
   std::vector<transport::Address> servers;    ///< footingd's and footing-sim's, in any order.
   std::optional<transport::Address> devices;  ///< footingd's device socket, unix:, for phones.
+  std::uint16_t skeleton_port = 7110;         ///< UDP, of this host: takes the joints from webcams.
+  std::filesystem::path pose_package;   ///< The folder of npm's `@mediapipe/pose`, for webcams.
   std::string token;                    ///< Gives a page the role control; empty: no page has it.
   std::vector<std::string> host_names;  ///< By which browsers may call this host.
   std::string identity_file;            ///< For tls:; empty: tls::DefaultIdentityFile().
@@ -45,8 +48,9 @@ class WebServer {
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// The address of a page for a browser, with a code for one use where the page needs it.
-  std::string Invite(Right right);
+  /// The address of a page, such as "/phone", for a browser, with a code for one use where the page
+  /// needs it.
+  std::string Invite(std::string_view page);
   const WebCounts& counts() const;
   /// As bound.
   std::vector<transport::Address> addresses() const;
@@ -60,6 +64,10 @@ class WebServer {
 
   std::shared_ptr<Desk> desk_;
 };
+
+/// Where scripts/fetch-pose-model puts npm's `@mediapipe/pose`:
+/// $XDG_DATA_HOME/footing/mediapipe-pose, by default below ~/.local/share.
+std::filesystem::path DefaultPosePackage();
 
 /// A file of the pages, which is part of the program.
 struct PageFile {

@@ -102,7 +102,8 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
     for (const auto& [name, value] : desk_->options.headers) response.set(name, value);
     for (const auto& [name, value] : answer.headers) response.set(name, value);
     response.prepare_payload();
-    deadline_.After(desk_->options.answer_within, [this] { Close(); });
+    deadline_.After(answer.file.empty() ? desk_->options.answer_within : desk_->options.file_within,
+                    [this] { Close(); });
     http::async_write(
         stream_, response,
         [self = shared_from_this()](const error_code& error, std::size_t) { self->OnSent(error); });

@@ -42,8 +42,9 @@ struct Options {
   std::size_t most_body_bytes = 0;       ///< A longer one is refused by its announced length.
   std::chrono::seconds request_within{5};
   std::chrono::seconds answer_within{5};
-  std::chrono::seconds next_within{0};  ///< For another request of the connection; 0: only one.
-  Headers headers = {};                 ///< Each answer has them.
+  std::chrono::seconds file_within{60};  ///< For the content of a file.
+  std::chrono::seconds next_within{0};   ///< For another request of the connection; 0: only one.
+  Headers headers = {};                  ///< Each answer has them.
   /// The answer to a request; nullptr: what came is not one.
   std::function<Answer(const Request*)> answer;
   /// Takes over the connection of a request, or returns false. Without it nobody does.

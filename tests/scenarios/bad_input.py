@@ -69,7 +69,7 @@ def wrong_words(stage):
            stage.sensor, "--connect", stage.sensor)
     expect(stage, USAGE, "takes two names", "footing-game", "--players", "Ann", "--seconds", 1)
     expect(stage, USAGE, "1 to 24 bytes", "footing-game", "--players", "Ann", "", "--seconds", 1)
-    expect(stage, USAGE, "must be 127.0.0.1:PORT", "footing-skeleton", "--web", "0.0.0.0:7180", "--no-publish")
+    expect(stage, USAGE, "footing-web", "footing-skeleton", "--web", "127.0.0.1:7180", "--no-publish")
     broker = ("--nats", "tcp:127.0.0.1:1", "--seconds", 1)
     expect(stage, USAGE, "--insecure-lan", "footing-relay", "serve", *broker, "--listen", "tcp:0.0.0.0:7460")
     expect(stage, USAGE, "--token-file", "footing-relay", "serve", *broker, "--listen", "tls:127.0.0.1:7460")

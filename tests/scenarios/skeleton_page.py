@@ -1,58 +1,59 @@
-"""The page of footing-skeleton --web: its files and refusals over HTTP; the bones that it draws, where there is
-node; and, where there are a browser and the npm package @mediapipe/pose, in headless Chromium: joints that the page
-makes of a synthetic person reach footingd; the pose model loads from this host and runs on the frames of a generated
-video, in which it finds nobody, and of a photograph, whose person's joints reach footingd.
+"""The page of footing-web for a webcam: the model's files and refusals over HTTP; packets that reach footing-skeleton;
+the bones that it draws, where there is node; and, where there are a browser and the npm package @mediapipe/pose, in
+headless Chromium: joints that the page makes of a synthetic person reach footingd; the pose model loads from this host
+and runs on the frames of a generated video, in which it finds nobody, and of a photograph, whose person's joints reach
+footingd.
 
-Usage: skeleton_page.py BINARY_FOLDER (http|figure|synthetic|model|person)
+Usage: skeleton_page.py BINARY_FOLDER (http|figure|synthetic|model|person) [PICTURE_FOLDER]
 """
-import http.client
 import json
 import math
 import os
 import pathlib
 import shutil
 import signal
-import socket
+import struct
 import subprocess
 import sys
-import tempfile
+import time
 
+import browser
 import harness
+import web_page
 from ports import free_port
 
 PACKAGE = pathlib.Path(os.environ.get("XDG_DATA_HOME") or pathlib.Path.home() / ".local/share") / "footing/mediapipe-pose"
 PICTURE = pathlib.Path(__file__).parent / "pictures/astronaut.jpg"
-PROFILE = tempfile.TemporaryDirectory(prefix="footing-chromium.", ignore_cleanup_errors=True)
+PAGES = pathlib.Path(__file__).parents[2] / "clients/web/page"
 
 
-def skip(why):
-    print(f"skipped: {why}")
-    sys.exit(77)
+def start_skeleton(stage, udp, *words):
+    stage.start("footing-skeleton", "--listen", f"127.0.0.1:{udp}", "--camera-m", "2.5,0,1", "--json", *words,
+                name="skeleton")
+    stage.wait_for(lambda: "listening" in (stage.folder / "skeleton.log").read_text(), "footing-skeleton")
 
 
-def serve(stage, seconds, *words):
-    """footing-skeleton with a page, and the page's port."""
-    port = free_port()
-    stage.start("footing-skeleton", "--listen", "127.0.0.1:0", "--web", f"127.0.0.1:{port}", "--camera-m", "2.5,0,1",
-                "--seconds", seconds, "--json", *words, name="skeleton")
-    stage.wait_for(lambda: "page for a webcam" in (stage.folder / "skeleton.log").read_text(), "the page")
-    return port
+def start_line(stage):
+    """footingd, footing-skeleton and footing-web; the page's address."""
+    stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+    stage.wait_for_socket(stage.sensor)
+    stage.wait_for_socket(stage.devices)
+    udp = free_port()
+    start_skeleton(stage, udp, "--to", stage.devices)
+    return web_page.serve(stage, "--skeleton-port", udp, "--pose-package", PACKAGE)[1]["webcam"]
 
 
-def statistics(stage, timeout_s):
-    assert stage.processes["skeleton"].wait(timeout_s) == 0
+def statistics(stage):
+    """Ends footing-skeleton; what it counted."""
+    stage.processes["skeleton"].send_signal(signal.SIGINT)
+    assert stage.processes["skeleton"].wait(20) == 0
     return json.loads((stage.folder / "skeleton.log").read_text().splitlines()[-1])
 
 
-def browse(stage, port, source, *words):
-    """Chromium on the page; nothing that it asks any other host for is answered."""
-    stage.processes["chromium"] = subprocess.Popen(
-        ["chromium", "--headless=new", "--no-sandbox", "--use-angle=swiftshader",
-         "--enable-unsafe-swiftshader", "--no-first-run", "--mute-audio",
-         "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1", f"--user-data-dir={PROFILE.name}",
-         "--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream", *words,
-         f"http://127.0.0.1:{port}/?source={source}"],
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def camera(video=None):
+    """Chromium with a webcam that shows a video."""
+    words = [f"--use-file-for-fake-video-capture={video}"] if video else []
+    return browser.Browser("--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream", *words)
 
 
 def write_video(path, frames=30, width=320, height=240):
@@ -73,22 +74,15 @@ def write_video(path, frames=30, width=320, height=240):
             video.write(b"FRAME\n" + bytes(luma) + b"\x80" * (width * height // 2))
 
 
-def get(port, target, host=None):
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
-    connection.putrequest("GET", target, skip_host=True)
-    connection.putheader("Host", host or f"127.0.0.1:{port}")
-    connection.endheaders()
-    answer = connection.getresponse()
-    return answer.status, answer.read().decode(errors="replace"), answer.headers
+def osc_text(text):
+    return text.encode() + b"\0" * (4 - len(text) % 4)
 
 
-def upgrade(port, origin):
-    """The first line of the answer to a WebSocket's handshake."""
-    with socket.create_connection(("127.0.0.1", port), timeout=10) as stream:
-        stream.sendall((f"GET /skeleton HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: {origin}\r\nUpgrade: websocket\r\n"
-                        "Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
-                        "Sec-WebSocket-Version: 13\r\n\r\n").encode())
-        return stream.recv(4096).decode().splitlines()[0]
+def skeleton_packet(sequence):
+    """Footing's dialect without a time: a left hand."""
+    elements = [osc_text("/footing/skeleton") + osc_text(",hi") + struct.pack(">qi", sequence, 1),
+                osc_text("/footing/joint") + osc_text(",sffff") + osc_text("l_hand") + struct.pack(">4f", -0.64, 0.48, 2, 1)]
+    return osc_text("#bundle") + struct.pack(">q", 1) + b"".join(struct.pack(">i", len(one)) + one for one in elements)
 
 
 def check_http(stage):
@@ -96,23 +90,47 @@ def check_http(stage):
     package.mkdir()
     (package / "pose.js").write_text("// a model\n")
     (stage.folder / "secret").write_text("no page\n")
-    port = serve(stage, 0, "--no-publish", "--pose-package", package)
-    status, text, headers = get(port, "/?source=synthetic")
-    assert status == 200 and "page.js" in text and headers["Content-Type"].startswith("text/html"), (status, text)
+    udp = free_port()
+    port, printed = web_page.serve(stage, "--skeleton-port", udp, "--pose-package", package)
+    assert printed["webcam"] == f"http://127.0.0.1:{port}/webcam", printed
+    status, text, headers = web_page.ask(port, "/webcam?source=synthetic")
+    assert status == 200 and "webcam.js" in text, (status, text)
     assert "http" not in headers["Content-Security-Policy"], "nothing from another host"
-    for name in ("page.js", "figure.js", "landmarks.js", "page.css"):
-        assert get(port, "/" + name)[0] == 200, name
-    for name in ("index.html", "page.js", "figure.js", "landmarks.js", "page.css"):
-        assert "https:" not in get(port, "/" + name)[1], f"{name} names another host"
-    assert get(port, "/pose/pose.js")[1] == "// a model\n"
-    for target in ("/pose/../secret", "/pose/%2e%2e/secret", "/pose/", "/pose/.hidden", "/secret", "/pose/none.js"):
-        assert get(port, target)[0] == 404, target
-    assert get(port, "/", host="attacker.example")[0] == 403
-    assert " 101 " in upgrade(port, f"http://127.0.0.1:{port}")
-    assert " 403 " in upgrade(port, "http://attacker.example")
-    stage.processes["skeleton"].send_signal(signal.SIGINT)
-    web = statistics(stage, 20)["web"]
-    assert web["pages"] == 1 and web["refused"] == 8, web
+    assert "'unsafe-eval'" in headers["Content-Security-Policy"] and headers["Permissions-Policy"] == "camera=(self)"
+    assert "unsafe" not in web_page.ask(port, "/")[2]["Content-Security-Policy"]
+    for name in ("webcam.html", "webcam.js", "figure.js", "landmarks.js"):
+        status, text, _ = web_page.ask(port, "/" + name)
+        assert status == 200 and "https://" not in text, name
+    assert web_page.ask(port, "/pose/pose.js")[1] == "// a model\n"
+    for target in ("/pose/../secret", "/pose/%2e%2e/secret", "/pose/", "/pose/.hidden", "/secret"):
+        assert web_page.ask(port, target)[0] == 404, target
+    assert "fetch-pose-model" in web_page.ask(port, "/pose/none.js")[1]
+    assert web_page.WebSocket(port, "/skeleton", "http://attacker.example").status == 403
+    check_forwarding(stage, port, udp)
+
+
+def check_forwarding(stage, port, udp):
+    page = web_page.WebSocket(port, "/skeleton")
+    assert page.status == 101
+    for sequence in range(2):
+        page.send(skeleton_packet(sequence))
+    assert f"UDP port {udp}" in page.receive().decode(), "nobody listens there"
+    start_skeleton(stage, udp, "--no-publish")
+    deadline, sequence = time.monotonic() + 10, 2
+    page.stream.settimeout(0.1)
+    said = None
+    while said != b"" and time.monotonic() < deadline:
+        page.send(skeleton_packet(sequence))
+        sequence += 1
+        try:
+            said = page.receive()
+        except TimeoutError:
+            pass
+    assert said == b"", "it has come"
+    report = statistics(stage)
+    assert report["people"][0]["dialect"] == "footing" and report["skeletons"] >= 5, report
+    done = stage.run("footing-skeleton", "--web", "127.0.0.1:7180")
+    assert done.returncode == 2 and "footing-web --listen tcp:127.0.0.1:7180" in done.stderr, done
 
 
 # The bones drawn of the synthetic person: landmarks of both ends, width and opacity of the line.
@@ -137,9 +155,8 @@ console.log(JSON.stringify([whole, bones()]));
 
 def check_figure(stage):
     """A line a bone; the left elbow inferred: both its bones are thinner and paler; the right knee lost: none."""
-    port = serve(stage, 0, "--no-publish")
     for name in ("figure.js", "landmarks.js"):
-        (stage.folder / name).write_text(get(port, "/" + name)[1])
+        shutil.copy(PAGES / name, stage.folder)
     (stage.folder / "package.json").write_text('{"type": "module"}')
     (stage.folder / "draw.js").write_text(DRAW)
     done = subprocess.run(["node", stage.folder / "draw.js"], capture_output=True, text=True, timeout=60, check=False)
@@ -156,31 +173,30 @@ def check_figure(stage):
         full_width, full_opacity = whole[bone]
         paler = width < full_width and opacity < full_opacity
         assert paler if bone in inferred else [width, opacity] == whole[bone], (bone, part)
-    stage.processes["skeleton"].send_signal(signal.SIGINT)
-    statistics(stage, 20)
 
 
-def check_missing_package(stage):
-    port = serve(stage, 0, "--no-publish", "--pose-package", stage.folder / "nothing")
-    log = stage.folder / "skeleton.log"
-    stage.wait_for(lambda: "run scripts/fetch-pose-model" in log.read_text(), "what is missing")
-    assert "fetch-pose-model" in get(port, "/pose/pose.js")[1]
-    stage.processes["skeleton"].send_signal(signal.SIGINT)
-    assert statistics(stage, 20)["web"]["refused"] == 1
-
-
-def check_synthetic(stage):
-    stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
-    stage.wait_for_socket(stage.sensor)
-    stage.wait_for_socket(stage.devices)
-    port = serve(stage, 30, "--to", stage.devices)
-    browse(stage, port, "synthetic")
-    samples = [sample for tick in harness.read_ticks(stage.sensor, 25, ("hands",))
-               for sample in tick.get("hands", {}).get("samples", [])]
-    report = statistics(stage, 60)
+def check_synthetic(stage, pictures):
+    address = start_line(stage)
+    with browser.Browser() as chromium:
+        page = chromium.open(address + "?source=synthetic", 820, 1180)
+        page.wait_for("window.footing().sent > 20")
+        samples = [sample for tick in harness.read_ticks(stage.sensor, 10, ("hands",))
+                   for sample in tick.get("hands", {}).get("samples", [])]
+        for name, width, height, dark in (("tablet", 820, 1180, False), ("phone", 390, 844, True), ("desktop", 1280, 720, False)):
+            page.show(width, height, dark)
+            page.wait_for(f"window.innerWidth === {width}")
+            assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), name
+            if pictures:
+                page.screenshot(pathlib.Path(pictures) / f"webcam-{name}.png")
+        page.evaluate("document.getElementById('stop').click()")
+        page.wait_for("!document.getElementById('camera').hidden && document.activeElement.id === 'camera'")
+        report = statistics(stage)
+        page.evaluate("document.getElementById('synthetic').click()")
+        page.wait_for("document.getElementById('status').textContent.includes('start it')")
+        assert not page.errors, page.errors
     person = report["people"][0]
     assert person["dialect"] == "footing" and person["advice"] == "", person
-    assert report["web"]["packets"] > 20 and person["skeletons"] > 20, report
+    assert person["skeletons"] > 20, report
     # The camera is 1 m up and looks along -x: shoulders are 1.41 m up, 36 cm apart, above W's origin.
     places = {number: [one["position_m"] for one in samples if one.get("joint") == number] for number in (3, 4)}
     left, right = places[3][-1], places[4][-1]
@@ -188,38 +204,34 @@ def check_synthetic(stage):
     assert abs(left["z"] - 1.41) < 0.02 and abs(left["x"]) < 0.05, left
 
 
+def open_camera(chromium, address):
+    """The page, once the model has run on the webcam."""
+    page = chromium.open(address + "?source=camera")
+    state = page.wait_for("/model runs|Stopped/.test(window.footing().state) && window.footing().state", 250)
+    assert "model runs" in state, state
+    return page
+
+
 def check_model(stage):
     video = stage.folder / "figure.y4m"
     write_video(video)
-    port = serve(stage, 0, "--no-publish")
-    browse(stage, port, "camera", f"--use-file-for-fake-video-capture={video}")
-    log = stage.folder / "skeleton.log"
-    stage.wait_for(lambda: "page: the model runs" in log.read_text() or "page: stopped" in log.read_text(),
-                   "the model", timeout_s=250)
-    assert "page: stopped" not in log.read_text(), log.read_text()
-    stage.processes["skeleton"].send_signal(signal.SIGINT)
-    web = statistics(stage, 20)["web"]
-    assert web["frames"] >= 1, web
+    with camera(video) as chromium:
+        counts = open_camera(chromium, start_line(stage)).evaluate("window.footing()")
+    assert counts["frames"] >= 1, counts
 
 
 def check_person(stage):
     """A photograph as a webcam: the model finds who is in it, and where the joints are to each other."""
-    stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
-    stage.wait_for_socket(stage.sensor)
-    stage.wait_for_socket(stage.devices)
     video = stage.folder / "person.mjpeg"
     video.write_bytes(10 * PICTURE.read_bytes())
-    port = serve(stage, 0, "--to", stage.devices)
-    browse(stage, port, "camera", f"--use-file-for-fake-video-capture={video}")
-    log = stage.folder / "skeleton.log"
-    stage.wait_for(lambda: "page: the model runs" in log.read_text() or "page: stopped" in log.read_text(),
-                   "the model", timeout_s=250)
-    assert "page: stopped" not in log.read_text(), log.read_text()
-    samples = [sample for tick in harness.read_ticks(stage.sensor, 15, ("hands",))
-               for sample in tick.get("hands", {}).get("samples", [])]
-    stage.processes["skeleton"].send_signal(signal.SIGINT)
-    report = statistics(stage, 20)
-    assert report["web"]["found"] >= 3 and report["web"]["found"] >= 0.9 * report["web"]["frames"], report
+    address = start_line(stage)
+    with camera(video) as chromium:
+        page = open_camera(chromium, address)
+        samples = [sample for tick in harness.read_ticks(stage.sensor, 15, ("hands",))
+                   for sample in tick.get("hands", {}).get("samples", [])]
+        counts = page.evaluate("window.footing()")
+    report = statistics(stage)
+    assert counts["found"] >= 3 and counts["found"] >= 0.9 * counts["frames"], counts
     assert report["people"][0]["skeletons"] >= 3 and report["people"][0]["joints"] >= 20, report
     assert report["published"] >= 3, report
     # Head, left and right shoulder. She faces the camera, which looks along -x: her left is at y > 0.
@@ -238,11 +250,11 @@ def main():
         skip("chromium is missing; scripts/dependencies-web.txt lists what this test needs")
     if part in ("model", "person") and not (PACKAGE / "pose.js").is_file():
         skip("@mediapipe/pose is missing; run scripts/fetch-pose-model")
-    checks = {"http": (check_http, check_missing_package), "figure": (check_figure,),
-              "synthetic": (check_synthetic,), "model": (check_model,), "person": (check_person,)}
-    for check in checks[part]:
-        with harness.Stage(sys.argv[1]) as stage:
-            check(stage)
+    pictures = sys.argv[3] if len(sys.argv) > 3 else None
+    checks = {"http": check_http, "figure": check_figure, "synthetic": lambda stage: check_synthetic(stage, pictures),
+              "model": check_model, "person": check_person}
+    with harness.Stage(sys.argv[1]) as stage:
+        checks[part](stage)
 
 
 if __name__ == "__main__":

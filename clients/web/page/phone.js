@@ -1,5 +1,5 @@
 // A phone as a controller: its motion goes to footingd as the reports of an inertial sensor.
-import { enter } from './entry.js';
+import { enter, sentence, whyClosed } from './entry.js';
 import { MOST_SAMPLES, reportOf, SignFinder } from './motion.js';
 import { decode, encode } from './protobuf.js';
 import { ENUMS } from './schema.js';
@@ -134,6 +134,7 @@ function dial() {
   socket.binaryType = 'arraybuffer';
   run.socket = socket;
   run.attached = false;
+  run.why = '';
   socket.onopen = () => {
     if (run !== mine) return socket.close();
     socket.send(attachMessage());
@@ -141,15 +142,14 @@ function dial() {
     mine.failures = 0;
     element('way').textContent = 'WebSocket';
     say(`Sending. ${mine.sign.known ? '' : 'Hold the phone still for a second.'}`);
-    mine.why = '';
   };
   socket.onmessage = event => takeDevice(decode('DeviceEnvelope', new Uint8Array(event.data)));
-  socket.onclose = event => {
-    if (run !== mine) return;
+  socket.onclose = async event => {
     mine.attached = false;
+    mine.why ||= event.reason || await whyClosed('may_attach');
+    if (run !== mine) return;
     element('way').textContent = '-';
     if (mine.failures !== 0 && ++mine.failures > FAILURES_UNTIL_POST) return post();
-    mine.why ||= event.reason || 'footing-web does not answer';
     say(`Not connected: ${mine.why}. Trying again.`);
     setTimeout(() => { if (run === mine) dial(); }, REDIAL_MS);
   };
@@ -285,7 +285,7 @@ async function prepare() {
   const role = localStorage.getItem('footing-role');
   if (role) document.querySelector(`input[name="role"][value="${role}"]`).checked = true;
   about = await enter(say);
-  if (!about.may_attach) return say('This phone needs a code: scan the QR code of footing-web --phones.');
+  if (!about.may_attach) return say(sentence(about.needs_code));
   element('start').disabled = false;
   element('start').onclick = start;
   element('stop').onclick = stop;

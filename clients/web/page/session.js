@@ -1,5 +1,6 @@
 // A session with footingd or footing-sim through footing-web (docs/web.md): connects, keeps
 // connected, subscribes, answers pings and estimates the server's clock.
+import { whyClosed } from './entry.js';
 import { decode, encode } from './protobuf.js';
 
 const SHORTEST_WAIT_MS = 250, LONGEST_WAIT_MS = 4000;
@@ -33,6 +34,7 @@ export class Session {
 
   connect() {
     this.set('connecting', this.why ?? '');
+    this.why = '';
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const socket = new WebSocket(`${scheme}//${location.host}${this.options.path}`);
     socket.binaryType = 'arraybuffer';
@@ -44,10 +46,10 @@ export class Session {
       this.subscribe();
     };
     socket.onmessage = event => this.take(new Uint8Array(event.data));
-    socket.onclose = event => {
+    socket.onclose = async event => {
+      const why = event.reason || this.why || await whyClosed('may_view');
       if (this.socket !== socket) return;
-      if (event.reason) this.why = event.reason;
-      else if (!this.why) this.why = 'footing-web does not answer';
+      this.why = why;
       if (this.state !== 'refused') this.set('connecting', this.why);
       setTimeout(() => { if (this.socket === socket) this.connect(); }, this.wait * (0.5 + 0.5 * Math.random()));
       this.wait = Math.min(2 * this.wait, LONGEST_WAIT_MS);

@@ -1,32 +1,46 @@
 // A webcam's frames through the pose model of npm's @mediapipe/pose, all of it in this browser, and
-// the joints to footing-skeleton, which serves this page.
+// the joints through footing-web to footing-skeleton.
+import { enter, sentence, whyClosed } from './entry.js';
 import { drawFigure } from './figure.js';
 import { encode, syntheticLandmarks, toJoints } from './landmarks.js';
 
-const canvas = document.getElementById('picture');
+const REDIAL_MS = 1000;
+
+const element = id => document.getElementById(id);
+const canvas = element('person'), video = element('video'), fieldOfView = element('field-of-view');
 const context = canvas.getContext('2d');
-const video = document.getElementById('video');
-const fieldOfView = document.getElementById('field-of-view');
 const counts = { frames: 0, found: 0, sent: 0 };
-let socket = null, sequence = 0, run = 0, state = '';
+// `state`: of the source; `wrong`: of the way to footing-skeleton.
+let socket = null, sequence = 0, run = 0, state = 'Choose a source.', wrong = '';
 
 function show(text) {
   state = text;
-  document.getElementById('state').textContent = text;
   report();
 }
 
 function report() {
-  document.getElementById('counts').textContent =
-      `${counts.frames} frames, ${counts.found} with a person, ${counts.sent} sent`;
-  if (socket && socket.readyState === WebSocket.OPEN)
-    socket.send(JSON.stringify({ frames: counts.frames, found: counts.found, state }));
+  const status = wrong ? sentence(wrong) : state;
+  if (element('status').textContent !== status) element('status').textContent = status;
+  element('status').className = wrong ? 'bad' : '';
+  for (const [name, count] of Object.entries(counts)) element(name).textContent = count;
 }
 
 function connect() {
-  socket = new WebSocket(`ws://${location.host}/skeleton`);
-  socket.onopen = report;
-  socket.onclose = () => setTimeout(connect, 1000);
+  const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
+  socket = new WebSocket(`${scheme}//${location.host}/skeleton`);
+  socket.onopen = () => { wrong = ''; report(); };
+  socket.onmessage = event => { wrong = event.data; report(); };
+  socket.onclose = async () => {
+    wrong = await whyClosed('may_track');
+    report();
+    setTimeout(connect, REDIAL_MS);
+  };
+}
+
+function setRunning(running) {
+  element('stop').hidden = !running;
+  element('camera').hidden = element('synthetic').hidden = running;
+  (running ? element('stop') : element('camera')).focus();
 }
 
 function draw(picture, landmarks) {
@@ -55,7 +69,8 @@ const nowMs = () => performance.timeOrigin + performance.now();
 
 function runSynthetic() {
   const mine = ++run;
-  show('a synthetic person, no camera');
+  setRunning(true);
+  show('A synthetic person, no camera.');
   const began = performance.now();
   const next = () => {
     if (mine !== run) return;
@@ -74,15 +89,17 @@ function loadModel() {
     script.src = '/pose/pose.js';
     script.onload = resolve;
     script.onerror = () => reject(new Error(
-        'the pose model is not installed: run scripts/fetch-pose-model and load this page again'));
+        'the pose model is not installed: run scripts/fetch-pose-model on the computer that serves this page, and load it again'));
     document.head.append(script);
   });
 }
 
 async function runCamera() {
   const mine = ++run;
+  setRunning(true);
   try {
-    show('loading the pose model');
+    if (!navigator.mediaDevices) throw new Error('browsers give webcams to pages of this computer and of https only');
+    show('Loading the pose model.');
     await loadModel();
     const pose = new window.Pose({ locateFile: name => '/pose/' + name });
     pose.setOptions({ modelComplexity: 1, smoothLandmarks: true, minDetectionConfidence: 0.5,
@@ -91,32 +108,41 @@ async function runCamera() {
     pose.onResults(results => take(results.image, results.poseLandmarks,
                                    results.poseWorldLandmarks, exposedMs));
     await pose.initialize();
-    show('asking for the webcam');
+    show('Asking for the webcam.');
     video.srcObject = await navigator.mediaDevices.getUserMedia(
         { video: { width: 640, height: 480 }, audio: false });
     await video.play();
     canvas.width = video.videoWidth;
     canvas.height = video.videoHeight;
-    show('watching the webcam');
+    show('Watching the webcam.');
     while (mine === run) {
       exposedMs = nowMs();
       await pose.send({ image: video });
-      if (!model) show('the model runs on the webcam');
+      if (!model) show('The model runs on the webcam.');
       model = true;
       await new Promise(resolve => setTimeout(resolve, 0));
     }
     for (const track of video.srcObject.getTracks()) track.stop();
     await pose.close();
   } catch (error) {
-    show('stopped: ' + (error.message ?? error));
+    setRunning(false);
+    show(`Stopped: ${error.message ?? error}.`);
   }
 }
 
-document.getElementById('camera').onclick = runCamera;
-document.getElementById('synthetic').onclick = runSynthetic;
-document.getElementById('stop').onclick = () => { ++run; show('stopped'); };
-connect();
-show('choose a source');
-const source = new URLSearchParams(location.search).get('source');
-if (source === 'camera') runCamera();
-if (source === 'synthetic') runSynthetic();
+async function start() {
+  const about = await enter(show);
+  if (!about.may_track) return show(sentence(about.needs_code));
+  element('camera').onclick = runCamera;
+  element('synthetic').onclick = runSynthetic;
+  element('stop').onclick = () => { ++run; setRunning(false); show('Stopped.'); };
+  element('camera').disabled = element('synthetic').disabled = false;
+  connect();
+  const source = new URLSearchParams(location.search).get('source');
+  if (source === 'camera') runCamera();
+  if (source === 'synthetic') runSynthetic();
+}
+
+// For tests and the curious.
+window.footing = () => ({ ...counts, state, wrong });
+start();
