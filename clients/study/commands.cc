@@ -553,6 +553,7 @@ struct RunOptions {
   std::string sensor;
   std::string simulation;
   std::string survey;
+  bool asks_on_screen = false;
   bool withdraw = false;
   std::optional<std::uint64_t> undo, restore;
   std::string reason;
@@ -573,7 +574,9 @@ Result<SessionOptions> ToSession(const RunOptions& given, const LoadedProtocol& 
   const auto simulation = transport::AddressOrDefault(given.simulation, "simulation");
   if (!simulation) return simulation.error();
   options.simulation = *simulation;
-  if (!given.survey.empty()) {
+  if (given.asks_on_screen && given.survey.empty()) {
+    options.survey = transport::DefaultAddress("survey", true);
+  } else if (given.asks_on_screen) {
     const auto parsed = transport::ParseAddress(given.survey);
     if (!parsed) return parsed.error();
     options.survey = *parsed;
@@ -617,9 +620,13 @@ void AddRunCommand(CLI::App& app, Shared& shared) {
   command->add_option("--participant", given->participant, "Code of the participant")->required();
   command->add_option("--sensor", given->sensor, "Address of footingd");
   command->add_option("--simulation", given->simulation, "Address of footing-sim");
-  command->add_option("--survey", given->survey,
-                      "Address for the participant's survey screen, footing-study survey (default: "
-                      "ask in this terminal)");
+  const CLI::Option* const survey =
+      command
+          ->add_option("--survey", given->survey,
+                       "Ask on the participant's screen, that of footing-web or footing-study "
+                       "survey, which connects to this address (default: one of this user; without "
+                       "--survey: ask in this terminal)")
+          ->expected(0, 1);
   command->add_flag("--unattended", given->unattended,
                     "Without a person: no prompts and no waiting; surveys are answered at random, "
                     "marked synthetic");
@@ -634,7 +641,10 @@ void AddRunCommand(CLI::App& app, Shared& shared) {
   withdraw->excludes(undo)->excludes(restore);
   undo->excludes(restore);
   command->add_option("--reason", given->reason, "Reason of a withdrawal or correction");
-  command->callback([given, &shared] { Finish(Run(*given), shared); });
+  command->callback([given, survey, &shared] {
+    given->asks_on_screen = survey->count() > 0;
+    Finish(Run(*given), shared);
+  });
 }
 
 namespace {
@@ -837,7 +847,7 @@ class ScreenClient {
 };
 
 Result<void> ShowSurveys(const std::string& address) {
-  const auto parsed = transport::ParseAddress(address);
+  const auto parsed = transport::AddressOrDefault(address, "survey");
   if (!parsed) return parsed.error();
   Console console;
   ScreenClient(console, *parsed).Run();
@@ -850,10 +860,12 @@ void AddSurveyCommand(CLI::App& app, Shared& shared) {
   const auto address = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
       "survey", "The participant's survey screen: a terminal that shows and answers the questions");
-  command->add_option("--connect", *address, "Address of footing-study run --survey")->required();
+  command->add_option("--connect", *address,
+                      "Address of footing-study run --survey (default: that of this user)");
   command->footer(
       "Examples:\n"
-      "  footing-study run study.json --participant P01 --survey unix:/tmp/survey.sock\n"
+      "  footing-study run study.json --participant P01 --survey\n"
+      "  footing-study survey\n"
       "  footing-study survey --connect unix:/tmp/survey.sock");
   command->callback([address, &shared] {
     if (const auto done = ShowSurveys(*address); !done)

@@ -24,10 +24,11 @@ namespace {
 
 struct ServeFlags {
   std::vector<std::string> listen, connect, host_names, origins;
-  std::string devices, token_file, identity_file, pose_package;
+  std::string devices, survey, token_file, identity_file, pose_package;
   std::uint16_t skeleton_port = WebOptions().skeleton_port;
   double seconds = 0;
-  bool foxglove = false, invite = false, phones = false, webcam = false, json = false;
+  bool foxglove = false, invite = false, phones = false, webcam = false, study = false,
+       json = false;
 
   Result<WebOptions> Options() const {
     WebOptions options;
@@ -52,6 +53,9 @@ struct ServeFlags {
       return UsageError("--devices " + devices + ": must be footingd's unix:PATH on this host");
     }
     options.devices = *to;
+    const auto asked = transport::AddressOrDefault(survey, "survey");
+    if (!asked) return asked.error();
+    options.survey = *asked;
     options.skeleton_port = skeleton_port;
     options.pose_package = pose_package;
     if (!token_file.empty()) {
@@ -89,10 +93,15 @@ class Doorkeeper {
 
  private:
   void Show() {
-    if (flags_.invite || !(flags_.phones || flags_.webcam)) Print("Live page", "/");
+    const bool some = flags_.phones || flags_.webcam || flags_.study;
+    if (flags_.invite || !some) Print("Live page", "/");
+    if (flags_.study) {
+      Print("The participant's screen", "/participant");
+      if (!flags_.invite) Print("The experimenter's screen", "/");
+    }
     if (flags_.phones) Print("A phone as a controller", "/phone");
     if (flags_.webcam) Print("A webcam", "/webcam");
-    if (flags_.invite || flags_.phones || flags_.webcam) Wait();
+    if (flags_.invite || some) Wait();
   }
 
   void Print(const std::string& title, std::string_view page) {
@@ -128,7 +137,8 @@ int Serve(const ServeFlags& flags) {
     std::cout << nlohmann::ordered_json{{"listening_on", listening},
                                         {"page", (*server)->Invite("/")},
                                         {"phone", (*server)->Invite("/phone")},
-                                        {"webcam", (*server)->Invite("/webcam")}}
+                                        {"webcam", (*server)->Invite("/webcam")},
+                                        {"participant", (*server)->Invite("/participant")}}
               << std::endl;
   }
   Doorkeeper doorkeeper(io, **server, flags);
@@ -166,6 +176,10 @@ std::function<int()> AddServe(CLI::App& app) {
                  "https://app.foxglove.dev; may be repeated");
   app.add_flag("--invite", flags->invite, "Show a QR code of the live page for each browser");
   app.add_flag("--phones", flags->phones, "Show a QR code for each phone that is a controller");
+  app.add_flag("--study", flags->study,
+               "Show QR codes of the participant's and the experimenter's screens of a study");
+  app.add_option("--survey", flags->survey,
+                 "Address of footing-study run --survey (default: that of this user)");
   app.add_flag("--webcam", flags->webcam,
                "Show a QR code of the page that tracks a person with a webcam");
   app.add_option("--skeleton-port", flags->skeleton_port,
@@ -190,6 +204,7 @@ int main(int argc, char** argv) {
       "  footing-web                                   # http://127.0.0.1:7480/ on this host\n"
       "  footing-web --listen tls:192.168.1.5:7480 --invite    # a QR code for other devices\n"
       "  footing-web --listen tls:192.168.1.5:7480 --phones    # a QR code for each phone\n"
+      "  footing-web --listen tls:192.168.1.5:7480 --study     # screens for a user study\n"
       "  footing-skeleton & footing-web                # http://127.0.0.1:7480/webcam: a webcam\n"
       "  footing-web --foxglove                        # in Foxglove open ws://127.0.0.1:7480\n"
       "  footing-web --connect unix:/run/footing/simulation.sock --json");

@@ -10,8 +10,9 @@
 
 namespace footing::web {
 
-/// Right of a browser; each includes those before it.
-enum class Right { kNone, kView, kDevices };
+/// Right of a browser: to watch, to answer a study's survey, to attach devices. Each includes those
+/// before it.
+enum class Right { kNone, kView, kAnswer, kDevices };
 
 /// One-time codes, which a QR code shows, and the passes that browsers get for them, which they
 /// keep in a cookie. A plain value; instants are of CLOCK_MONOTONIC. Both are forgotten when the

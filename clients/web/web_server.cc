@@ -191,7 +191,19 @@ class Mailbox : public std::enable_shared_from_this<Mailbox> {
 namespace {
 
 /// The kind of messages on a WebSocket.
-enum class Carries { kSession, kDevices };
+enum class Carries { kSession, kDevices, kSurvey };
+
+constexpr std::size_t MostBytes(Carries carries) {
+  switch (carries) {
+    case Carries::kSession:
+      return 64u << 10;
+    case Carries::kDevices:
+      return transport::kMaxDeviceBytes;
+    case Carries::kSurvey:
+      return 16u << 10;
+  }
+  return 0;
+}
 
 /// One WebSocket and its connection to a server. Messages go one by one: the next one is read when
 /// the one before it has left, so nothing is queued here, and the server sees how fast the page
@@ -212,7 +224,7 @@ class Bridge : public std::enable_shared_from_this<Bridge> {
         asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
     websocket::stream_base::timeout timeout{std::chrono::seconds(5), kIdle, true};
     page_.set_option(timeout);
-    page_.read_message_max(carries_ == Carries::kSession ? 64u << 10 : transport::kMaxDeviceBytes);
+    page_.read_message_max(MostBytes(carries_));
     page_.binary(true);
     page_.async_accept(request, [self = shared_from_this()](const error_code& error) {
       if (error || self->desk_->closed) return;
@@ -554,6 +566,7 @@ class SkeletonSocket : public std::enable_shared_from_this<SkeletonSocket> {
 /// The right that a page needs.
 Right RightFor(std::string_view page, bool secure) {
   if (page == "/phone") return Right::kDevices;
+  if (page == "/participant") return Right::kAnswer;
   // On this host everybody can send to footing-skeleton without a page.
   if (page == "/webcam") return secure ? Right::kDevices : Right::kView;
   return Right::kView;
@@ -628,6 +641,10 @@ class Reception {
     constexpr std::string_view kSession = "/session/";
     if (target == "/devices" && desk_->options.devices) {
       return SocketTarget{*desk_->options.devices, Carries::kDevices, Right::kDevices};
+    }
+    if (target == "/survey" && desk_->options.survey) {
+      return SocketTarget{*desk_->options.survey, Carries::kSurvey,
+                          RightFor("/participant", secure_)};
     }
     if (!target.starts_with(kSession)) return std::nullopt;
     const auto index = text::ToCount(std::string(target.substr(kSession.size())));
@@ -760,6 +777,7 @@ class Reception {
                                   {"servers", desk_->options.servers.size()},
                                   {"may_view", right >= Right::kView},
                                   {"may_attach", right >= Right::kDevices},
+                                  {"may_answer", right >= Right::kAnswer},
                                   {"may_track", MayTrack(request)},
                                   {"needs_code", NeedsCode(request)},
                                   {"devices", desk_->options.devices.has_value()}};

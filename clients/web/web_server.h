@@ -21,6 +21,7 @@ struct WebOptions {
   std::vector<transport::Address> listen;     ///< tcp: of this host, tls: of any.
   std::vector<transport::Address> servers;    ///< footingd's and footing-sim's, in any order.
   std::optional<transport::Address> devices;  ///< footingd's device socket, unix:, for phones.
+  std::optional<transport::Address> survey;   ///< Where footing-study asks.
   std::uint16_t skeleton_port = 7110;         ///< UDP, of this host: takes the joints from webcams.
   std::filesystem::path pose_package;   ///< The folder of npm's `@mediapipe/pose`, for webcams.
   std::string token;                    ///< Gives a page the role control; empty: no page has it.

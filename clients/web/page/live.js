@@ -1,6 +1,6 @@
 // The live page: what footing-sim and footingd publish, as a picture, signals and words.
 import { enter } from './entry.js';
-import { nameOf, showDevices, showInterface, showNumbers, showTrial } from './panels.js';
+import { nameOf, showDevices, showInterface, showNumbers, showStudy, showTrial } from './panels.js';
 import { Renderer } from './renderer.js';
 import { interpolate, Scene } from './scene.js';
 import { Session } from './session.js';
@@ -20,7 +20,7 @@ const dark = window.matchMedia('(prefers-color-scheme: dark)');
 // Messages that have come, by the server that sent it.
 const state = {
   sessions: [], devices: [], frames: [], past: [], lag: 0, simulation: null, sensor: null,
-  reference: null, delay: 0, missed: 0, shownAge: NaN, ticks: 0,
+  reference: null, study: null, studyAt: 0, delay: 0, missed: 0, shownAge: NaN, ticks: 0,
 };
 const scene = new Scene();
 const strips = new Strips(element('strips'));
@@ -67,7 +67,7 @@ function takeTick(session, tick) {
     showDevices(element('devices'), element('no-devices'), state.devices);
   }
   if (tick.setup) showPrompt(tick.setup.rigs.find(rig => rig.prompt)?.prompt.text ?? '');
-  if (tick.study?.participant) showPrompt(tick.study.doing);
+  if (tick.study) Object.assign(state, { study: tick.study, studyAt: performance.now() });
   if (tick.reference) state.reference = { pose: tick.reference.poses[0], time: tick.host_ns * 1e-9 };
   takeSamples(tick);
 }
@@ -133,6 +133,8 @@ function showPanels() {
   element('simulated').hidden = !(character?.simulated_input || state.devices.some(one => one.simulated && one.state !== 4));
   showInterface(element('gait'), element('activity'), character);
   showNumbers(element('numbers'), character);
+  showStudy(element('study-panel'), element('study-title'), element('study-doing'), element('study-list'), state.study,
+            (performance.now() - state.studyAt) / 1e3);
   showTrial(element('trial-panel'), element('trial-text'), element('trial'), character?.trial);
   element('picture').setAttribute('aria-label', element('gait').textContent === '-' ? 'No body yet'
       : `The simulated body: ${element('gait').textContent}`);

@@ -80,7 +80,7 @@ export function showNumbers(list, character) {
     ['COM height', com_m ? `${(100 * com_m.z).toFixed(0)} cm` : undefined],
     ['hands', body.hands_source || 'not tracked'],
   ] : gait ? [
-    ['speed', `${gait.speed_mps.toFixed(2)} m/s`],
+    ['speed', `${(Math.round(100 * gait.speed_mps) / 100 + 0).toFixed(2)} m/s`],  // Without -0.00.
     ['commanded', `${gait.commanded_speed_mps.toFixed(2)} m/s`],
     ['turn', `${degrees(gait.commanded_turn_rad)}° a step`],
     ['distance', `${gait.distance_m.toFixed(1)} m`],
@@ -91,6 +91,27 @@ export function showNumbers(list, character) {
   ] : []);
 }
 
+// A countdown that had `left` seconds, `passed` seconds later.
+const clock = (left, passed) => {
+  const seconds = Math.ceil(Math.max(0, left - passed));
+  return left > 0 ? `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}` : undefined;
+};
+
+// Where a study stands, for the experimenter. `passed`: since that was sent, s.
+export function showStudy(panel, title, doing, list, study, passed) {
+  panel.hidden = !study?.participant;
+  if (panel.hidden) return;
+  set(title, `${study.participant}, ${study.phase}${study.attempt ? `, attempt ${study.attempt}` : ''}`);
+  set(doing, study.doing);
+  fill(list, [
+    ['left', clock(study.left_s, passed)],
+    ['phase', `${study.number} of ${study.phases}`],
+    ['next', study.next],
+    ['in motion', `${(study.active_s / 60).toFixed(1)} min`],
+    ['keys in the terminal', study.keys || undefined],
+  ]);
+}
+
 export function showTrial(panel, text, list, trial) {
   panel.hidden = !trial || (!trial.trial && !trial.finish_m);
   if (panel.hidden) return;
@@ -99,5 +120,6 @@ export function showTrial(panel, text, list, trial) {
     ['time', `${trial.time_s.toFixed(1)} s`],
     ['distance', `${trial.distance_m.toFixed(1)}${trial.finish_m ? ' of ' + trial.finish_m.toFixed(0) : ''} m`],
     ['failures', String(trial.failed_attempts)],
+    ...Object.entries(trial.failures ?? {}).filter(([, count]) => count > 0).map(([kind, count]) => [kind, String(count)]),
   ]);
 }
