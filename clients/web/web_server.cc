@@ -94,6 +94,8 @@ struct WebServer::Desk {
   std::string refused_foxglove;          ///< Why the last one was, which is logged once.
   std::map<std::string, std::shared_ptr<Mailbox>> mailboxes;  ///< By the phone's pass.
   std::optional<tls::Identity> identity;
+  timer::Timer certificate_check{io};
+  transport::TokenGuard token{options.token};
   std::vector<std::unique_ptr<http_server::Server>> servers;
   bool closed = false;
 };
@@ -278,7 +280,13 @@ class Bridge : public std::enable_shared_from_this<Bridge> {
                                    from_page_.size());
     const auto checked = Checked(message);
     from_page_.consume(from_page_.size());
-    if (!checked) return End(websocket::close_code::policy_error, checked.error().message);
+    if (!checked) {
+      const double wait_s = guesses_ ? transport::ServerOptions().wrong_token_wait_s : 0;
+      return answer_.After(wait_s,
+                           [this, why = checked.error().message, self = shared_from_this()] {
+                             End(websocket::close_code::policy_error, why);
+                           });
+    }
     said_hello_ = true;
     to_server_ = transport::Frame(*checked);
     if (connected_) WriteServer(0);
@@ -301,9 +309,12 @@ class Bridge : public std::enable_shared_from_this<Bridge> {
       return InvalidData("the first message of a page must be a Hello");
     }
     v1::Hello& hello = *envelope.mutable_hello();
-    const bool has_token = !desk_->options.token.empty() &&
-                           transport::IsSameSecret(desk_->options.token, hello.token());
-    if (!hello.token().empty() && !has_token) {
+    const bool has_token = !hello.token().empty();
+    const std::string host = transport::PeerOf(page_.next_layer().socket().native_handle()).host;
+    const auto verdict = has_token ? desk_->token.Check(hello.token(), host, clock::MonotonicNs())
+                                   : transport::TokenGuard::Verdict{};
+    if (has_token && verdict.role != v1::ROLE_CONTROL) {
+      guesses_ = verdict.waits;
       return InvalidData("the token is wrong; use that of the token file of footing-web");
     }
     transport::ClientOptions own;
@@ -393,8 +404,10 @@ class Bridge : public std::enable_shared_from_this<Bridge> {
   std::string to_server_, to_page_;
   std::array<char, 16 << 10> input_;
   std::string_view unhandled_;  ///< The part of input_ that has not gone to the page yet.
+  timer::Timer answer_{desk_->io};
   bool connected_ = false;
   bool said_hello_ = false;
+  bool guesses_ = false;  ///< Its token was wrong once too often: the answer waits.
   bool over_ = false;
 };
 
@@ -600,6 +613,9 @@ class Reception {
       return Refuse(http::status::method_not_allowed, "there are GET and POST\n");
     }
     if (target == "/about.json") return About(*request);
+    if (target == "/footing.crt" && secure_) {
+      return {http::status::ok, "application/x-x509-ca-cert", desk_->identity->CertificatePem()};
+    }
     if (target.starts_with(kModelPrefix)) return Model(*request, target);
     return File(*request, target);
   }
@@ -833,6 +849,25 @@ Result<void> LoadIdentity(Desk& desk) {
   return {};
 }
 
+/// As browsers call this host.
+std::string CalledHost(const Desk& desk, const transport::Address& address) {
+  return desk.options.host_names.empty() ? address.host : desk.options.host_names.front();
+}
+
+/// Says what is wrong with the certificate, now and every day.
+void CheckCertificate(Desk& desk) {
+  for (const auto& server : desk.servers) {
+    if (server->address().kind != transport::Address::Kind::kTls) continue;
+    const std::string host = CalledHost(desk, server->address());
+    const std::string fault = desk.identity->FaultFor(host, clock::WallNs() / 1'000'000'000);
+    if (fault.empty()) continue;
+    log::Warning("the certificate " + fault + ", so browsers refuse https://" + host +
+                 "; renew it or name the right host, and restart footing-web (Certificates in "
+                 "docs/web.md)");
+  }
+  desk.certificate_check.After(std::chrono::hours(24), [&desk] { CheckCertificate(desk); });
+}
+
 Result<std::unique_ptr<http_server::Server>> Listen(const std::shared_ptr<Desk>& desk,
                                                     const transport::Address& address) {
   const bool secure = address.kind == transport::Address::Kind::kTls;
@@ -876,6 +911,7 @@ Result<std::unique_ptr<WebServer>> WebServer::Open(asio::io_context& io, WebOpti
     if (!server) return server.error();
     desk->servers.push_back(std::move(*server));
   }
+  if (desk->identity) CheckCertificate(*desk);
   return std::unique_ptr<WebServer>(new WebServer(std::move(desk)));
 }
 
@@ -894,10 +930,10 @@ std::string WebServer::Invite(std::string_view page) {
     if (server->address().kind == transport::Address::Kind::kTls) address = server->address();
   }
   const bool secure = address.kind == transport::Address::Kind::kTls;
-  const bool is_v6 = address.host.find(':') != std::string::npos;
-  const std::string url = (secure ? "https://" : "http://") +
-                          (is_v6 ? "[" + address.host + "]" : address.host) + ":" +
-                          std::to_string(address.port) + std::string(page);
+  const std::string host = secure ? CalledHost(*desk_, address) : address.host;
+  const bool is_v6 = host.find(':') != std::string::npos;
+  const std::string url = (secure ? "https://" : "http://") + (is_v6 ? "[" + host + "]" : host) +
+                          ":" + std::to_string(address.port) + std::string(page);
   const Right right = RightFor(page, secure);
   if (!secure && right <= Right::kView) return url;
   return url + "#" + desk_->passes.NewCode(right, clock::MonotonicNs());

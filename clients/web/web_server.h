@@ -25,7 +25,7 @@ struct WebOptions {
   std::uint16_t skeleton_port = 7110;         ///< UDP, of this host: takes the joints from webcams.
   std::filesystem::path pose_package;   ///< The folder of npm's `@mediapipe/pose`, for webcams.
   std::string token;                    ///< Gives a page the role control; empty: no page has it.
-  std::vector<std::string> host_names;  ///< By which browsers may call this host.
+  std::vector<std::string> host_names;  ///< By which browsers may call this host; the first: do.
   std::string identity_file;            ///< For tls:; empty: tls::DefaultIdentityFile().
   bool foxglove = false;                ///< Foxglove's protocol for programs of this host.
   std::vector<std::string> origins;     ///< Pages of others that may use it, as https://HOST.

@@ -14,6 +14,7 @@
 #include <openssl/sha.h>
 #include <openssl/ssl.h>
 #include <openssl/x509.h>
+#include <openssl/x509v3.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -62,6 +63,12 @@ Certificate MakeCertificate(EVP_PKEY* key, const std::string& common_name) {
   return ok ? made : nullptr;
 }
 
+std::string TextOf(const Memory& memory) {
+  char* text = nullptr;
+  const long size = BIO_get_mem_data(memory.get(), &text);
+  return {text, static_cast<std::size_t>(size)};
+}
+
 /// Key and certificate as PEM text; empty when OpenSSL cannot.
 std::string MakePem(const std::string& common_name) {
   const Key key(EVP_EC_gen("P-256"), EVP_PKEY_free);
@@ -73,9 +80,7 @@ std::string MakePem(const std::string& common_name) {
       PEM_write_bio_X509(memory.get(), certificate.get()) != 1) {
     return "";
   }
-  char* text = nullptr;
-  const long size = BIO_get_mem_data(memory.get(), &text);
-  return {text, static_cast<std::size_t>(size)};
+  return TextOf(memory);
 }
 
 /// Writes beside, then links: the file is complete as soon as it is there, and the first one stays.
@@ -114,10 +119,10 @@ Result<std::string> ReadPrivate(const std::string& path) {
 
 }  // namespace
 
-Identity::Identity(Key key, Certificate certificate)
+Identity::Identity(Key key, std::vector<Certificate> chain)
     : key_(std::move(key)),
-      certificate_(std::move(certificate)),
-      fingerprint_(FingerprintOf(DerOf(certificate_.get()))) {}
+      chain_(std::move(chain)),
+      fingerprint_(FingerprintOf(DerOf(chain_.front().get()))) {}
 
 Result<Identity> Identity::Load(const std::string& path) {
   const auto text = ReadPrivate(path);
@@ -128,15 +133,18 @@ Result<Identity> Identity::Load(const std::string& path) {
   const Memory of_key = open(), of_certificate = open();
   const auto no_password = [](char*, int, int, void*) { return -1; };
   Key key(PEM_read_bio_PrivateKey(of_key.get(), nullptr, no_password, nullptr), EVP_PKEY_free);
-  Certificate certificate(PEM_read_bio_X509(of_certificate.get(), nullptr, no_password, nullptr),
-                          X509_free);
-  if (!key || !certificate || X509_check_private_key(certificate.get(), key.get()) != 1) {
+  std::vector<Certificate> chain;
+  while (X509* const one = PEM_read_bio_X509(of_certificate.get(), nullptr, no_password, nullptr)) {
+    chain.emplace_back(one, X509_free);
+  }
+  ERR_clear_error();
+  if (!key || chain.empty() || X509_check_private_key(chain.front().get(), key.get()) != 1) {
     return InvalidData("identity " + path +
                        ": it must have a private key without a password and its certificate, both "
                        "as PEM; remove it to have a new one made, which every client must then "
                        "trust again");
   }
-  return Identity(std::move(key), std::move(certificate));
+  return Identity(std::move(key), std::move(chain));
 }
 
 Result<Identity> Identity::LoadOrMake(const std::string& path, const std::string& common_name) {
@@ -147,6 +155,38 @@ Result<Identity> Identity::LoadOrMake(const std::string& path, const std::string
     if (auto written = WriteOnce(path, pem); !written) return written.error();
   }
   return Load(path);
+}
+
+namespace {
+
+std::string DateText(const ASN1_TIME* time) {
+  const Memory memory(BIO_new(BIO_s_mem()), BIO_free);
+  return ASN1_TIME_print(memory.get(), time) == 1 ? TextOf(memory) : "an unknown date";
+}
+
+}  // namespace
+
+std::string Identity::FaultFor(const std::string& host, std::int64_t unix_s) const {
+  X509* const own = chain_.front().get();
+  time_t now = unix_s;
+  if (X509_cmp_time(X509_get0_notAfter(own), &now) < 0) {
+    return "has expired on " + DateText(X509_get0_notAfter(own));
+  }
+  if (X509_cmp_time(X509_get0_notBefore(own), &now) > 0) {
+    return "is not valid before " + DateText(X509_get0_notBefore(own));
+  }
+  if (X509_get_ext_by_NID(own, NID_subject_alt_name, -1) < 0 ||
+      X509_check_ip_asc(own, host.c_str(), 0) == 1 ||
+      X509_check_host(own, host.c_str(), host.size(), X509_CHECK_FLAG_NEVER_CHECK_SUBJECT,
+                      nullptr) == 1) {
+    return "";
+  }
+  return "is not for " + host;
+}
+
+std::string Identity::CertificatePem() const {
+  const Memory memory(BIO_new(BIO_s_mem()), BIO_free);
+  return PEM_write_bio_X509(memory.get(), chain_.front().get()) == 1 ? TextOf(memory) : "";
 }
 
 namespace {
@@ -196,9 +236,12 @@ Error NoContext() {
 
 Result<Context> Context::ForServer(const Identity& identity) {
   const auto shared = NewContext(TLS_server_method());
-  if (!shared || SSL_CTX_use_certificate(shared.get(), identity.certificate_.get()) != 1 ||
+  if (!shared || SSL_CTX_use_certificate(shared.get(), identity.chain_.front().get()) != 1 ||
       SSL_CTX_use_PrivateKey(shared.get(), identity.key_.get()) != 1) {
     return NoContext();
+  }
+  for (std::size_t i = 1; i < identity.chain_.size(); ++i) {
+    if (SSL_CTX_add1_chain_cert(shared.get(), identity.chain_[i].get()) != 1) return NoContext();
   }
   SSL_CTX_set_verify(shared.get(), SSL_VERIFY_PEER, nullptr);
   return Context(shared);
@@ -207,7 +250,7 @@ Result<Context> Context::ForServer(const Identity& identity) {
 Result<Context> Context::ForClient(const Identity* own) {
   const auto shared = NewContext(TLS_client_method());
   if (!shared) return NoContext();
-  if (own != nullptr && (SSL_CTX_use_certificate(shared.get(), own->certificate_.get()) != 1 ||
+  if (own != nullptr && (SSL_CTX_use_certificate(shared.get(), own->chain_.front().get()) != 1 ||
                          SSL_CTX_use_PrivateKey(shared.get(), own->key_.get()) != 1)) {
     return NoContext();
   }

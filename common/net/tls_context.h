@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/net/tls_channel.h"
@@ -16,11 +18,12 @@ namespace footing::tls {
 
 /// A private key (ECDSA P-256) with a self-signed certificate: who a server, or a client, is.
 ///
-/// Others know it by its fingerprint alone, as with ssh: names, dates and chains mean nothing, and
-/// the certificate never expires.
+/// Footing's programs know it by its fingerprint alone, as with ssh: names, dates and chains mean
+/// nothing, and a certificate that is made here never expires. Browsers look at all of them.
 class Identity {
  public:
-  /// From a PEM file of its owner alone (mode 0600 or less) with key and certificate.
+  /// From a PEM file of its owner alone (mode 0600 or less) with key and certificate, and those of
+  /// the authorities above it, if any.
   static Result<Identity> Load(const std::string& path);
 
   /// The same; where there is no such file it is made, and the folders above it (mode 0700). Two
@@ -29,12 +32,19 @@ class Identity {
 
   const std::string& fingerprint() const { return fingerprint_; }
 
+  /// Why browsers refuse it at this time (UNIX time, s) for an address or name of its host: "has
+  /// expired on May  1 12:00:00 2026 GMT"; empty: for neither date nor name. One that names no
+  /// host, as those that are made here, is for any.
+  std::string FaultFor(const std::string& host, std::int64_t unix_s) const;
+  /// The certificate without the key, as PEM.
+  std::string CertificatePem() const;
+
  private:
   friend class Context;
-  Identity(std::shared_ptr<evp_pkey_st> key, std::shared_ptr<x509_st> certificate);
+  Identity(std::shared_ptr<evp_pkey_st> key, std::vector<std::shared_ptr<x509_st>> chain);
 
   std::shared_ptr<evp_pkey_st> key_;
-  std::shared_ptr<x509_st> certificate_;
+  std::vector<std::shared_ptr<x509_st>> chain_;  ///< Its certificate, and the authorities' above.
   std::string fingerprint_;
 };
 

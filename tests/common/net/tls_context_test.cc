@@ -87,6 +87,45 @@ TEST(Identity, AKeyWithoutItsCertificateIsRefusedAndLeftAlone) {
   EXPECT_EQ(std::filesystem::file_size(path), text.size());
 }
 
+/// A key with a certificate for 192.0.2.5 and lab.example, from 2026-01-01 to 2027-01-01, made with
+/// openssl ca -selfsign; nobody uses it.
+constexpr const char* kForLab = R"(-----BEGIN PRIVATE KEY-----
+MIGHAgEAMBMGByqGSM49AgEGCCqGSM49AwEHBG0wawIBAQQgE7kezY61WFZzf3qh
+YHEzIMik7E1Aje9ydaEYMM3YWxGhRANCAATkZ4MMFu8khhe1xjP+uykTXFdHehGi
+drqvGJPNyQrkFeitDfmPqGKsOOa9yttkJRP+GlUeER/5zyKxTYrvYP53
+-----END PRIVATE KEY-----
+-----BEGIN CERTIFICATE-----
+MIIBWjCCAQCgAwIBAgIBATAKBggqhkjOPQQDAjAWMRQwEgYDVQQDDAtsYWIuZXhh
+bXBsZTAeFw0yNjAxMDEwMDAwMDBaFw0yNzAxMDEwMDAwMDBaMBYxFDASBgNVBAMM
+C2xhYi5leGFtcGxlMFkwEwYHKoZIzj0CAQYIKoZIzj0DAQcDQgAE5GeDDBbvJIYX
+tcYz/rspE1xXR3oRona6rxiTzckK5BXorQ35j6hirDjmvcrbZCUT/hpVHhEf+c8i
+sU2K72D+d6M/MD0wHAYDVR0RBBUwE4cEwAACBYILbGFiLmV4YW1wbGUwHQYDVR0O
+BBYEFG6r75eHpLAQ5t1gPbogLi4mZgx+MAoGCCqGSM49BAMCA0gAMEUCIQChC8cu
+9N8Mlp6O0gOHCdk8RFJ7CkGML7ZE9FGjgeo/5gIgQDOTOW2HkrnC3JmzgWBLIH/v
+7FcJcvYqMmEv+Ey7wbE=
+-----END CERTIFICATE-----
+)";
+
+TEST(Identity, SaysWhyBrowsersRefuseIt) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("lab.pem");
+  std::ofstream(path) << kForLab;
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  const auto lab = Identity::Load(path);
+  ASSERT_TRUE(lab.ok()) << lab.error().message;
+  constexpr std::int64_t k2025 = 1'750'000'000, k2026 = 1'780'000'000, k2027 = 1'800'000'000;
+  EXPECT_EQ(lab->FaultFor("192.0.2.5", k2026), "");
+  EXPECT_EQ(lab->FaultFor("lab.example", k2026), "");
+  EXPECT_EQ(lab->FaultFor("192.0.2.6", k2026), "is not for 192.0.2.6");
+  EXPECT_EQ(lab->FaultFor("lab", k2026), "is not for lab");
+  EXPECT_EQ(lab->FaultFor("lab.example", k2027), "has expired on Jan  1 00:00:00 2027 GMT");
+  EXPECT_EQ(lab->FaultFor("lab.example", k2025), "is not valid before Jan  1 00:00:00 2026 GMT");
+  EXPECT_EQ(std::string(kForLab).find(lab->CertificatePem()) != std::string::npos, true);
+  const auto own = Identity::LoadOrMake(folder.Path("own.pem"), "Footing");
+  ASSERT_TRUE(own.ok());
+  EXPECT_EQ(own->FaultFor("192.0.2.5", k2026), "") << "it is known by its fingerprint alone";
+}
+
 TEST(Identity, AFolderThatCannotBeWrittenIsNamed) {
   const auto refused = Identity::LoadOrMake("/proc/none/identity.pem", "Footing");
   ASSERT_FALSE(refused.ok());
