@@ -65,6 +65,7 @@ LinkModel::LinkModel(const LinkConfig& config, std::int64_t start_ns)
 
 double LinkModel::DrawInterval() {
   const double u = random_.Uniform();
+  if (config_.most_turn_s > 0) return std::lerp(config_.least_turn_s, config_.most_turn_s, u);
   const double ms =
       config_.quality == LinkQuality::kGood ? AtProbability(kGood, u) : AtProbability(kPoor, u);
   return ms * 1e-3 * kRecordedGoodHz / config_.nominal_rate_hz;

@@ -20,6 +20,10 @@ struct LinkConfig {
   double nominal_rate_hz = 100;  ///< Rate of reports on a good link.
   std::uint64_t seed = 1;
   bool queues = false;  ///< Every sample is a report of its own and waits for the radio.
+  /// Time between two turns of the radio, drawn evenly, on another link than Bluetooth; 0: as
+  /// recorded.
+  double least_turn_s = 0;
+  double most_turn_s = 0;
 };
 
 /// 100 new samples and 100 reports a second.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/virtual/devices/phone.h"
+
 namespace footing::virtual_devices {
 namespace {
 
@@ -48,6 +50,25 @@ TEST(LinkModel, AGoodBoardLinkIsTheRecordedOne) {
   EXPECT_NEAR(Quantile(got, 0.5), 11, 0.5);
   EXPECT_NEAR(Quantile(got, 0.95), 25, 0.8);
   EXPECT_NEAR(got.repeats, 0.255, 0.1);
+}
+
+TEST(LinkModel, APhonesEventsComeInBunchesAndNoneIsLost) {
+  LinkModel link(PhoneLink(LinkQuality::kGood, 4), 0);
+  std::int64_t turn_ns = 0, sampled_ns = 0;
+  std::vector<double> turns_ms;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto arrival = link.Next();
+    EXPECT_NEAR(static_cast<double>(arrival.sampled_ns - sampled_ns), 1e9 / 60, 2);
+    EXPECT_LE(arrival.arrives_ns - arrival.sampled_ns, 300'100'000);
+    sampled_ns = arrival.sampled_ns;
+    if (arrival.arrives_ns - turn_ns < 1'000'000) continue;  // In the same bunch.
+    turns_ms.push_back(static_cast<double>(arrival.arrives_ns - turn_ns) * 1e-6);
+    turn_ns = arrival.arrives_ns;
+  }
+  std::sort(turns_ms.begin() + 1, turns_ms.end());
+  EXPECT_GE(turns_ms[1], 49.9);
+  EXPECT_NEAR(turns_ms[turns_ms.size() / 2], 175, 10);
+  EXPECT_LE(turns_ms.back(), 300.1);
 }
 
 TEST(LinkModel, APoorBoardLinkIsSlowerAndHasOutages) {
