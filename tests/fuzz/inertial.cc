@@ -22,14 +22,14 @@ std::vector<std::uint8_t> Shaped(Bytes report) {
 }
 
 void CheckSamples(const decode::Decoded& decoded) {
-  Expect(!decoded.timed_motion.empty());
-  Expect(decoded.timed_motion.size() <= reports::kMostInertialSamples);
-  std::int64_t before_ns = decoded.timed_motion.front().sampled_ns;
-  for (const decode::TimedMotion& timed : decoded.timed_motion) {
-    Expect(timed.sampled_ns >= before_ns);
-    before_ns = timed.sampled_ns;
-    Expect(timed.sample.specific_force_mps2.norm() <= 1000);
-    Expect(timed.sample.angular_velocity_radps.norm() <= 200);
+  Expect(decoded.own_times && !decoded.motion.empty());
+  Expect(decoded.motion.size() <= reports::kMostInertialSamples);
+  std::int64_t before_ns = decoded.motion.front().sampled_ns;
+  for (const stream::MotionSample& sample : decoded.motion) {
+    Expect(sample.sampled_ns >= before_ns);
+    before_ns = sample.sampled_ns;
+    Expect(sample.specific_force_mps2.norm() <= 1000);
+    Expect(sample.angular_velocity_radps.norm() <= 200);
   }
 }
 

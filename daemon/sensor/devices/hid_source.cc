@@ -18,17 +18,23 @@
 #include "common/runtime/clock.h"
 #include "common/runtime/exchange.h"
 #include "common/stream/product_ids.h"
+#include "daemon/sensor/reports/joycon_report.h"
+#include "daemon/sensor/reports/outbox.h"
 
 namespace footing::devices {
 namespace {
 
 // Longer than the time between two reports, or many reads would time out first, for nothing.
 constexpr int kReadTimeoutMs = 15;
-// A device chokes on more than a write per 10 ms, which the outbox keeps to. Here what two threads
-// bunched up is spread again; were this the slower of the two, a flood would fill the queue between
-// them and its newest, the one that counts, would be refused.
-constexpr std::int64_t kWriteIntervalNs = 9'000'000;
-constexpr std::int64_t kSwitchWriteIntervalNs = 24'000'000;  // There the outbox's is 25 ms.
+// A device chokes on more writes than the outbox gives it. Here what two threads bunched up is
+// spread again; were this the slower of the two, a flood would fill the queue between them and its
+// newest, the one that counts, would be refused.
+constexpr std::int64_t kFasterNs = 1'000'000;
+
+std::int64_t WriteIntervalNs(const DeviceIdentity& device) {
+  const bool of_switch = stream::IsOfSwitch(device.vendor, device.product);
+  return (of_switch ? reports::kJoyconWriteIntervalNs : link::Writing().interval_ns) - kFasterNs;
+}
 
 }  // namespace
 
@@ -335,11 +341,9 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
         continue;
       }
       const DeviceHandle device = new_handle_();
-      const bool of_switch = stream::IsOfSwitch(found.identity.vendor, found.identity.product);
       readers_[device] = {
           found.identity.place,
-          std::make_unique<HidReader>(std::move(found.device),
-                                      of_switch ? kSwitchWriteIntervalNs : kWriteIntervalNs,
+          std::make_unique<HidReader>(std::move(found.device), WriteIntervalNs(found.identity),
                                       [this] { Wake(); })};
       handlers_.on_attach(device, found.identity);  // It may send at once.
     }

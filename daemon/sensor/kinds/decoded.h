@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,8 +13,8 @@
 #include "daemon/sensor/reports/sequencer.h"
 
 /// Output of every kind of device: samples of one report in SI units, made with the device's own
-/// calibration. They know no time: who stamps the samples adds device, report count, times, filter
-/// and gyroscope bias.
+/// calibration. They know no host time: who stamps the samples adds device, report count, times,
+/// filter and gyroscope bias.
 namespace footing::decode {
 
 /// Forces of one Balance Board report, N.
@@ -24,23 +23,12 @@ struct BoardReading {
   bool uncalibrated = false;
 };
 
-/// A sample of a device whose reports have times of its own, turned into the host's.
-struct TimedMotion {
-  stream::MotionSample sample;
-  std::int64_t sampled_ns = 0;
-};
-
-/// Time by a device's own clock.
-struct OwnTime {
-  double since_before_s = 0;  ///< Between the newest sample and that of the report before.
-  double spacing_s = 0;       ///< Between the samples of this report.
-};
-
 /// The samples of one report.
 struct Decoded {
-  std::array<stream::MotionSample, 3> motion{};  ///< Older first, evenly spaced.
-  std::size_t motion_count = 0;
-  std::vector<TimedMotion> timed_motion;  ///< Instead of `motion`: oldest first.
+  std::vector<stream::MotionSample> motion;  ///< Oldest first.
+  /// Their sampled_ns are by the device's own clock, which began at any instant. Else they say
+  /// nothing, and the samples are spread over a typical report.
+  bool own_times = false;
   std::optional<BoardReading> board;
   std::optional<stream::NunchukSample> nunchuk;
   std::optional<stream::GamepadSample> gamepad;
@@ -49,12 +37,8 @@ struct Decoded {
   bool buttons_only = false;
   /// The device took a new measurement: some sample differs from the report before.
   bool changed = false;
-  /// Only from a device that sends it; without, the samples are spread over a typical report.
-  std::optional<OwnTime> own_time;
 
-  bool empty() const {
-    return motion_count == 0 && timed_motion.empty() && !board && !nunchuk && !gamepad && !camera;
-  }
+  bool empty() const { return motion.empty() && !board && !nunchuk && !gamepad && !camera; }
 };
 
 /// Bits of stream::GamepadButton from those of reports::ClassicButton.
@@ -92,6 +76,8 @@ struct Timing {
   double report_period_s = 0.01;
   double sensor_period_s = 0.01;
   double max_lag_s = 0.025;  ///< Longest delay of a report that sample times allow for.
+  /// Share by which the device's own clock may be faster or slower than the host's.
+  double own_rate_range = 2e-4;
 };
 
 /// A feature report to ask a device for.

@@ -1,64 +1,41 @@
 #include "daemon/sensor/kinds/inertial.h"
 
 #include <algorithm>
-#include <cstdlib>
 
-#include "common/base/units.h"
 #include "common/stream/product_ids.h"
 
 namespace footing::inertial {
 namespace {
 
-constexpr std::size_t kSeconds = 10;
 constexpr double kLowBattery = 0.15;
 /// A vibration is asked for again, since a page lets it end by itself.
 constexpr std::int64_t kRepeatNs = 400'000'000;
 
 }  // namespace
 
-void OwnClock::Take(std::int64_t received_ns, std::int64_t device_ns) {
-  const std::int64_t difference_ns = received_ns - device_ns;
-  if (!seconds_.empty() && std::abs(difference_ns - seconds_.back().least_ns) > kJumpNs) {
-    seconds_.clear();
-  }
-  if (seconds_.empty() || received_ns - seconds_.back().from_ns >= kNanosecondsPerSecond) {
-    seconds_.push_back({received_ns, difference_ns});
-    if (seconds_.size() > kSeconds) seconds_.pop_front();
-  }
-  seconds_.back().least_ns = std::min(seconds_.back().least_ns, difference_ns);
-}
-
-std::int64_t OwnClock::HostNs(std::int64_t device_ns) const {
-  std::int64_t least_ns = seconds_.front().least_ns;
-  for (const Second& one : seconds_) least_ns = std::min(least_ns, one.least_ns);
-  return device_ns + least_ns;
-}
-
 bool InertialSensor::Matches(const decode::Product& product) {
   return stream::IsInertialSensor(product.vendor, product.product);
 }
 
 void InertialSensor::Restart() {
-  clock_ = OwnClock();
   last_.reset();
   number_.reset();
   lost_ = 0;
 }
 
-std::optional<decode::Decoded> InertialSensor::Take(std::int64_t received_ns, reports::Bytes bytes,
-                                                    kinds::Outputs&) {
+std::optional<decode::Decoded> InertialSensor::Take(std::int64_t /*received_ns*/,
+                                                    reports::Bytes bytes, kinds::Outputs&) {
   const auto report = reports::DecodeInertial(bytes);
   if (!report) return std::nullopt;
   if (number_) lost_ += static_cast<std::uint16_t>(report->number - *number_ - 1);
   number_ = report->number;
   battery_fraction_ = report->battery_fraction;
-  clock_.Take(received_ns, report->samples[report->count - 1].device_ns);
   decode::Decoded decoded;
+  decoded.own_times = true;
   for (std::size_t i = 0; i < report->count; ++i) {
     const reports::InertialSample& measured = report->samples[i];
-    decode::TimedMotion& timed = decoded.timed_motion.emplace_back();
-    timed.sampled_ns = clock_.HostNs(measured.device_ns);
-    stream::MotionSample& sample = timed.sample;
+    stream::MotionSample& sample = decoded.motion.emplace_back();
+    sample.sampled_ns = measured.device_ns;
     sample.specific_force_mps2 = measured.specific_force_S_mps2;
     sample.has_angular_velocity = report->has_rate;
     sample.angular_velocity_radps = measured.angular_velocity_S_radps;

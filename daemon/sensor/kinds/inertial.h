@@ -1,35 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 
 #include "daemon/sensor/kinds/kind.h"
 #include "daemon/sensor/reports/inertial_report.h"
 
 namespace footing::inertial {
-
-/// Host time of a device's own times, from when its reports arrive: Wi-Fi delays them by 50 to 300
-/// ms and never hastens them, so the ones that came fastest in the newest 10 s show the difference
-/// of the clocks, up to the shortest delay. A plain value.
-class OwnClock {
- public:
-  /// A difference that jumps by more is another start of the device's clock.
-  static constexpr std::int64_t kJumpNs = 2'000'000'000;
-
-  /// One report, whose newest sample is of `device_ns`.
-  void Take(std::int64_t received_ns, std::int64_t device_ns);
-  /// Asked after Take.
-  std::int64_t HostNs(std::int64_t device_ns) const;
-
- private:
-  /// The least arrival less device time of a second.
-  struct Second {
-    std::int64_t from_ns = 0;
-    std::int64_t least_ns = 0;
-  };
-  std::deque<Second> seconds_;
-};
 
 /// An inertial sensor that is not a HID device: a phone, a microcontroller, or a simulated one. It
 /// sends its samples without being asked, with times of its own, already in SI units.
@@ -53,7 +30,6 @@ class InertialSensor : public kinds::Kind {
   std::string Note(std::int64_t now_ns) const override;
 
  private:
-  OwnClock clock_;
   std::optional<reports::InertialSample> last_;
   std::optional<std::uint16_t> number_;
   std::uint64_t lost_ = 0;  ///< Reports by their numbers.

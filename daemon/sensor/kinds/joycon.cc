@@ -239,26 +239,36 @@ void Decoder::UpdateSensor(const JoyconReport& report) {
 
 decode::Decoded Decoder::Take(const calibration::JoyconCalibration& calibration,
                               std::int64_t received_ns, const JoyconReport& report) {
-  constexpr double kSpacingS = 0.005;
   decode::Decoded decoded;
-  if (const auto elapsed_s = timer_.Advance(received_ns, report.timer)) {
-    // Some adapters are sent reports sooner than every 15 ms, and none of their samples repeats.
-    decoded.own_time = {*elapsed_s, std::min(kSpacingS, *elapsed_s / 3)};
-  }
+  const auto own_ns = timer_.Advance(received_ns, report.timer);
   UpdateSensor(report);
   if (sensor_ != Sensor::kOff) TakeMotion(calibration, report, decoded);
+  if (own_ns) SetOwnTimes(*own_ns, decoded);
   TakeStick(calibration, report, decoded);
   if (model_ == JoyconModel::kPro) TakeGamepad(calibration, report, decoded);
   last_buttons_ = report.buttons;
   return decoded;
 }
 
+void Decoder::SetOwnTimes(std::int64_t newest_ns, decode::Decoded& decoded) {
+  const auto count = static_cast<std::int64_t>(decoded.motion.size());
+  if (count == 0) return;
+  // Some adapters are sent reports sooner than every 15 ms, and none of their samples repeats.
+  const std::int64_t spacing_ns =
+      std::clamp<std::int64_t>((newest_ns - newest_ns_) / count, 0, reports::kJoyconTickNs);
+  for (std::int64_t i = 0; i < count; ++i) {
+    decoded.motion[static_cast<std::size_t>(i)].sampled_ns =
+        newest_ns - (count - 1 - i) * spacing_ns;
+  }
+  decoded.own_times = true;
+  newest_ns_ = newest_ns;
+}
+
 void Decoder::TakeMotion(const calibration::JoyconCalibration& calibration,
                          const JoyconReport& report, decode::Decoded& decoded) {
-  decoded.motion_count = report.samples.size();
   for (std::size_t i = 0; i < report.samples.size(); ++i) {
     const auto reading = calibration::Calibrate(calibration, model_, report.samples[i]);
-    stream::MotionSample& sample = decoded.motion[i];
+    stream::MotionSample& sample = decoded.motion.emplace_back();
     sample.specific_force_mps2 = reading.specific_force_S_mps2;
     sample.clipped_axes = reading.clipped_axes;
     sample.has_angular_velocity = sensor_ == Sensor::kWorks;
@@ -285,8 +295,8 @@ void Decoder::TakeStick(const calibration::JoyconCalibration& calibration,
   sample.stick_y = at.y();
   sample.c = (report.buttons & (reports::kJoyconL | reports::kJoyconR)) != 0;
   sample.z = (report.buttons & (reports::kJoyconZl | reports::kJoyconZr)) != 0;
-  if (decoded.motion_count > 0) {
-    const stream::MotionSample& newest = decoded.motion[decoded.motion_count - 1];
+  if (!decoded.motion.empty()) {
+    const stream::MotionSample& newest = decoded.motion.back();
     sample.specific_force_mps2 = newest.specific_force_mps2;
     sample.clipped_axes = newest.clipped_axes;
   }
@@ -385,9 +395,9 @@ std::optional<decode::Decoded> Joycon::Take(std::int64_t received_ns, reports::B
 }
 
 link::Writing Joycon::writing() const {
-  // hid-nintendo: more than a subcommand per 25 ms disconnects it. SDL: the motor every 30 ms at
-  // most, and again every 50 ms while it shakes.
-  return {25'000'000, 30'000'000, 50'000'000, reports::JoyconRumbleOnly, reports::SetJoyconRumble};
+  // SDL: the motor every 30 ms at most, and again every 50 ms while it shakes.
+  return {reports::kJoyconWriteIntervalNs, 30'000'000, 50'000'000, reports::JoyconRumbleOnly,
+          reports::SetJoyconRumble};
 }
 
 std::optional<reports::OutputReport> Joycon::NextOutput(std::int64_t now_ns, link::Outbox& outbox) {

@@ -103,10 +103,9 @@ std::optional<decode::Decoded> Decoder::Take(const calibration::MoveCalibration&
   const auto report = reports::DecodeMove(model_, bytes);
   if (!report) return std::nullopt;
   decode::Decoded decoded;
-  decoded.motion_count = report->sample_count;
   for (std::size_t half = 0; half < report->sample_count; ++half) {
     const calibration::MoveReading reading = calibration::Calibrate(calibration, *report, half);
-    stream::MotionSample& sample = decoded.motion[half];
+    stream::MotionSample& sample = decoded.motion.emplace_back();
     sample.specific_force_mps2 = reading.specific_force_S_mps2;
     sample.clipped_axes = reading.clipped_axes;
     sample.has_angular_velocity = true;

@@ -39,8 +39,7 @@ Decoded Decoder::Take(const Setup& setup, const reports::InputReport& report) {
   const calibration::Acceleration acceleration =
       calibration::Calibrate(setup.acceleration, data->acceleration_counts);
   Decoded decoded;
-  decoded.motion_count = 1;
-  stream::MotionSample& sample = decoded.motion[0];
+  stream::MotionSample& sample = decoded.motion.emplace_back();
   sample.specific_force_mps2 = acceleration.specific_force_S_mps2;
   sample.clipped_axes = acceleration.clipped_axes;
   sample.buttons = report.has_buttons ? report.buttons : last_.buttons;
@@ -129,11 +128,10 @@ Decoded Decoder::TakeButtons(std::uint16_t buttons) {
   Decoded decoded;
   if (!has_last_ || buttons == last_.buttons) return decoded;
   last_.buttons = buttons;
-  decoded.motion_count = 1;
-  decoded.motion[0] = last_;
-  decoded.motion[0].repeated = true;
-  decoded.motion[0].has_angular_velocity = false;
-  decoded.motion[0].angular_velocity_radps.setZero();
+  stream::MotionSample& sample = decoded.motion.emplace_back(last_);
+  sample.repeated = true;
+  sample.has_angular_velocity = false;
+  sample.angular_velocity_radps.setZero();
   decoded.buttons_only = true;
   return decoded;
 }

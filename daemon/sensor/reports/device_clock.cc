@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <vector>
 
 #include "common/base/units.h"
 
@@ -200,12 +204,11 @@ SampleTicksConfig TicksOf(const DeviceClockConfig& config) {
 DeviceClock::DeviceClock(const DeviceClockConfig& config)
     : config_(config), ticks_(TicksOf(config)), period_s_(config.nominal_period_s) {}
 
-std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed,
-                                  std::optional<double> elapsed_s) {
+std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed) {
   // A clock that went back, which none should, restarts everything.
   if (started_ && received_ns < received_ns_) *this = Restarted();
-  AdvanceLoop(received_ns, elapsed_s ? *elapsed_s / config_.nominal_period_s : 1);
-  if (!elapsed_s) ticks_.Add(received_ns, changed);
+  AdvanceLoop(received_ns);
+  ticks_.Add(received_ns, changed);
   std::int64_t estimate_ns = loop_ns_;
   if (ticks_.known()) {
     estimate_ns = ticks_.TickBefore(received_ns);
@@ -239,8 +242,7 @@ DeviceClock DeviceClock::Restarted() const {
   return clock;
 }
 
-/// `periods`: nominal ones since the report before, by the device's clock.
-void DeviceClock::AdvanceLoop(std::int64_t received_ns, double periods) {
+void DeviceClock::AdvanceLoop(std::int64_t received_ns) {
   const std::int64_t pause_ns = received_ns - received_ns_;
   received_ns_ = received_ns;
   if (!started_ || pause_ns > RoundToNanoseconds(config_.restart_s)) {
@@ -250,7 +252,7 @@ void DeviceClock::AdvanceLoop(std::int64_t received_ns, double periods) {
     loop_ns_ = received_ns;
     return;
   }
-  const std::int64_t predicted_ns = loop_ns_ + RoundToNanoseconds(periods * period_s_);
+  const std::int64_t predicted_ns = loop_ns_ + RoundToNanoseconds(period_s_);
   const double error_s = NanosecondsToSeconds(received_ns - predicted_ns);
   loop_steps_ = std::min(loop_steps_ + 1, kSteadySteps);
   loop_variance_s2_ +=
@@ -266,6 +268,80 @@ void DeviceClock::AdvanceLoop(std::int64_t received_ns, double periods) {
   period_s_ =
       std::clamp(period_s_ + config_.period_gain * moved_s, config_.nominal_period_s / kPeriodRange,
                  config_.nominal_period_s * kPeriodRange);
+}
+
+namespace {
+
+constexpr std::size_t kOwnSeconds = 10;
+/// Until so many are over the rates are taken to be equal.
+constexpr std::size_t kLeastOwnSeconds = 2;
+
+}  // namespace
+
+void OwnClock::Take(std::int64_t received_ns, std::int64_t own_ns) {
+  const std::int64_t difference_ns = received_ns - own_ns;
+  const auto difference_of = [](const Fastest& one) { return one.received_ns - one.own_ns; };
+  if (!seconds_.empty() && std::abs(difference_ns - difference_of(seconds_.back())) > kJumpNs) {
+    seconds_.clear();
+  }
+  if (seconds_.empty() || received_ns - seconds_.back().from_ns >= kNanosecondsPerSecond) {
+    seconds_.push_back({received_ns, received_ns, own_ns});
+    if (seconds_.size() > kOwnSeconds + 1) seconds_.pop_front();
+    Fit();
+  } else if (Fastest& newest = seconds_.back(); difference_ns < difference_of(newest)) {
+    newest = {newest.from_ns, received_ns, own_ns};
+    Fit();
+  }
+}
+
+/// How far behind the line through the oldest point one came, s.
+double OwnClock::Behind(const Fastest& one, double rate) const {
+  const Fastest& oldest = seconds_.front();
+  return NanosecondsToSeconds(one.received_ns - oldest.received_ns) -
+         rate * NanosecondsToSeconds(one.own_ns - oldest.own_ns);
+}
+
+/// The nearest line below all points goes through two of them, or is as steep as a line may be.
+/// The second that is not over yet has no say in how steep: its first reports may all be late.
+void OwnClock::Fit() {
+  const std::size_t over = seconds_.size() - 1;
+  std::vector<double> rates = {1};
+  if (over >= kLeastOwnSeconds) rates = {1 - rate_range_, 1, 1 + rate_range_};
+  for (std::size_t j = 1; j < over; ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      const double own_s = NanosecondsToSeconds(seconds_[j].own_ns - seconds_[i].own_ns);
+      const double host_s = NanosecondsToSeconds(seconds_[j].received_ns - seconds_[i].received_ns);
+      if (std::abs(host_s - own_s) <= rate_range_ * own_s) rates.push_back(host_s / own_s);
+    }
+  }
+  double nearest_s = std::numeric_limits<double>::infinity();
+  for (const double rate : rates) {
+    std::vector<double> behind_s;
+    for (const Fastest& one : seconds_) behind_s.push_back(Behind(one, rate));
+    const auto lowest = std::min_element(behind_s.begin(), behind_s.end());
+    const double away_s = std::accumulate(behind_s.begin(), behind_s.end() - 1, 0.0) -
+                          static_cast<double>(over) * *lowest;
+    if (away_s >= nearest_s) continue;
+    nearest_s = away_s;
+    rate_ = rate;
+    const Fastest& on_line = seconds_[static_cast<std::size_t>(lowest - behind_s.begin())];
+    own_ns_ = on_line.own_ns;
+    host_ns_ = on_line.received_ns;
+  }
+}
+
+std::int64_t OwnClock::HostNs(std::int64_t own_ns) const {
+  return host_ns_ + RoundToNanoseconds(rate_ * NanosecondsToSeconds(own_ns - own_ns_));
+}
+
+double OwnClock::sampled_sd_s() const {
+  if (seconds_.size() <= kLeastOwnSeconds) return -1;
+  double square_s2 = 0;
+  for (auto one = seconds_.begin(); one + 1 != seconds_.end(); ++one) {
+    const double behind_s = NanosecondsToSeconds(one->received_ns - HostNs(one->own_ns));
+    square_s2 += behind_s * behind_s;
+  }
+  return std::sqrt(square_s2 / static_cast<double>(seconds_.size() - 1));
 }
 
 namespace {

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <optional>
 
 namespace footing::link {
 
@@ -108,10 +107,8 @@ class DeviceClock {
   explicit DeviceClock(const DeviceClockConfig& config = {});
 
   /// One report; returns its sampled_ns. `changed`: the sensor took a new sample since the report
-  /// before. `elapsed_s`: time since that report by the device's own clock, of a device that sends
-  /// it; without it reports are taken to be a period apart, and lost ones show in arrivals only.
-  std::int64_t Advance(std::int64_t received_ns, bool changed = true,
-                       std::optional<double> elapsed_s = {});
+  /// before. Reports are taken to be a period apart; lost ones show in arrivals only.
+  std::int64_t Advance(std::int64_t received_ns, bool changed = true);
   /// Period of the sensor's samples, once its ticks are known; until then of the reports.
   double period_s() const { return ticks_.known() ? ticks_.period_s() : period_s_; }
   /// Whether the ticks of the sensor are known.
@@ -121,7 +118,7 @@ class DeviceClock {
   double sampled_sd_s() const;
 
  private:
-  void AdvanceLoop(std::int64_t received_ns, double periods);
+  void AdvanceLoop(std::int64_t received_ns);
   DeviceClock Restarted() const;
 
   DeviceClockConfig config_;
@@ -133,6 +130,41 @@ class DeviceClock {
   std::int64_t sampled_ns_ = 0;
   int loop_steps_ = 0;           ///< Since the loop started, at most kSteadySteps.
   double loop_variance_s2_ = 0;  ///< Variance of the loop's timing error, over about a second.
+};
+
+/// Turns times of a device's own clock into the host's, from when its reports arrive. Links delay
+/// them (Bluetooth by some 10 ms, Wi-Fi by 50 to 300) and never hasten them. So of all lines that
+/// lie below the arrivals over the device's times of the newest 10 s, the nearest one is the host's
+/// time, up to the shortest delay (Moon, Skelly & Towsley 1999). A plain value.
+class OwnClock {
+ public:
+  /// A difference of the clocks that jumps by more is another start of the device's clock.
+  static constexpr std::int64_t kJumpNs = 2'000'000'000;
+
+  /// `rate_range`: share by which the device's clock may be faster or slower than the host's.
+  explicit OwnClock(double rate_range = 2e-4) : rate_range_(rate_range) {}
+
+  /// One report, whose newest sample is of `own_ns`.
+  void Take(std::int64_t received_ns, std::int64_t own_ns);
+  /// Asked after Take.
+  std::int64_t HostNs(std::int64_t own_ns) const;
+  /// As DeviceClock::sampled_sd_s: how far the fastest report of each second is from the line.
+  double sampled_sd_s() const;
+
+ private:
+  /// The report of a second that came fastest.
+  struct Fastest {
+    std::int64_t from_ns = 0;
+    std::int64_t received_ns = 0;
+    std::int64_t own_ns = 0;
+  };
+  void Fit();
+  double Behind(const Fastest& one, double rate) const;
+
+  double rate_range_;
+  std::deque<Fastest> seconds_;
+  double rate_ = 1;                        ///< Host's seconds in one of the device's.
+  std::int64_t own_ns_ = 0, host_ns_ = 0;  ///< A point of the line.
 };
 
 /// How a device's data reports arrive: rate, jitter, gaps. Rate and jitter are exponential means

@@ -109,14 +109,13 @@ std::span<const std::uint8_t> BlockIn(const JoyconReply& reply, const JoyconBloc
 
 namespace {
 
-constexpr double kCountS = 0.005;  // 5.00 ms within 1 % in recorded traffic.
 constexpr std::int64_t kMayWrapNs = 600'000'000;
 constexpr std::int64_t kJudgedNs = 1'000'000'000;
 constexpr double kLeastShare = 0.7, kMostShare = 1.4;
 
 }  // namespace
 
-std::optional<double> JoyconTimer::Advance(std::int64_t received_ns, std::uint8_t count) {
+std::optional<std::int64_t> JoyconTimer::Advance(std::int64_t received_ns, std::uint8_t count) {
   const std::int64_t pause_ns = received_ns - received_ns_;
   const auto counts = static_cast<std::uint8_t>(count - count_);
   const bool goes_on = started_ && pause_ns >= 0 && pause_ns < kMayWrapNs;
@@ -127,15 +126,17 @@ std::optional<double> JoyconTimer::Advance(std::int64_t received_ns, std::uint8_
     window_ns_ = window_counts_ = 0;
     return std::nullopt;
   }
+  own_ns_ += counts * kJoyconTickNs;
   window_ns_ += pause_ns;
   window_counts_ += counts;
   if (window_ns_ >= kJudgedNs) {
-    const double share = window_counts_ * kCountS / NanosecondsToSeconds(window_ns_);
+    const double share =
+        static_cast<double>(window_counts_ * kJoyconTickNs) / static_cast<double>(window_ns_);
     trusted_ = share > kLeastShare && share < kMostShare;
     window_ns_ = window_counts_ = 0;
   }
   if (!trusted_) return std::nullopt;
-  return counts * kCountS;
+  return own_ns_;
 }
 
 }  // namespace footing::reports

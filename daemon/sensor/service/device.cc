@@ -118,27 +118,35 @@ void SampleTiming::Restart(const decode::Timing& timing) {
   config.sensor_period_s = timing.sensor_period_s;
   config.max_lag_s = timing.max_lag_s;
   clock_ = link::DeviceClock(config);
+  own_clock_ = link::OwnClock(timing.own_rate_range);
+  own_times_ = false;
   statistics_ = link::LinkStatistics(timing.report_period_s);
 }
 
 void SampleTiming::Take(std::int64_t received_ns, const decode::Decoded& decoded) {
-  const auto& own = decoded.own_time;
   statistics_.Advance(received_ns);
-  const std::optional<double> elapsed_s = own ? std::optional(own->since_before_s) : std::nullopt;
-  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(received_ns, decoded.changed, elapsed_s));
-  const double count = static_cast<double>(std::max<std::size_t>(decoded.motion_count, 1));
-  spacing_ns_ =
-      static_cast<std::int64_t>((own ? own->spacing_s : timing_.report_period_s / count) * 1e9);
+  own_times_ = decoded.own_times;
+  std::int64_t newest_ns = 0;
+  if (own_times_) {
+    const std::int64_t own_ns = decoded.motion.back().sampled_ns;
+    own_clock_.Take(received_ns, own_ns);
+    newest_ns = std::min(own_clock_.HostNs(own_ns), received_ns);
+  } else {
+    own_clock_ = link::OwnClock(timing_.own_rate_range);
+    newest_ns = clock_.Advance(received_ns, decoded.changed);
+  }
+  sampled_ns_ = std::max(sampled_ns_, newest_ns);
 }
 
-void SampleTiming::TakeTimed(std::int64_t received_ns, std::int64_t sampled_ns) {
-  statistics_.Advance(received_ns);
-  sampled_ns_ = std::max(sampled_ns_, std::min(sampled_ns, received_ns));
-}
-
-std::int64_t SampleTiming::EarlierNs(std::size_t back, std::int64_t before_ns) const {
-  const std::int64_t earlier_ns = sampled_ns_ - static_cast<std::int64_t>(back) * spacing_ns_;
-  return std::clamp(earlier_ns, before_ns, sampled_ns_);
+std::int64_t SampleTiming::TimeOf(const decode::Decoded& decoded, std::size_t i,
+                                  std::int64_t before_ns) const {
+  const double count = static_cast<double>(decoded.motion.size());
+  const double back = count - 1 - static_cast<double>(i);
+  const std::int64_t at_ns =
+      decoded.own_times
+          ? own_clock_.HostNs(decoded.motion[i].sampled_ns)
+          : sampled_ns_ - SecondsToNanoseconds(back * timing_.report_period_s / count);
+  return std::clamp(at_ns, before_ns, sampled_ns_);
 }
 
 void Device::Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity,
@@ -256,7 +264,6 @@ void Device::Stamp(const devices::IncomingReport& report, Sample& sample) const 
 void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded& decoded,
                          TickContent& content) {
   if (!HasSpace(content)) return;
-  if (!decoded.timed_motion.empty()) return TakeTimedMotion(report, decoded, content);
   const std::int64_t before_ns = timing_.sampled_ns();
   if (!decoded.buttons_only) timing_.Take(report.received_ns, decoded);
   TakeMotion(report, decoded, before_ns, content);
@@ -280,33 +287,15 @@ void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded&
 void Device::TakeMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
                         std::int64_t before_ns, TickContent& content) {
   const bool measured = !decoded.buttons_only;
-  for (std::size_t i = 0; i < decoded.motion_count; ++i) {
+  for (std::size_t i = 0; i < decoded.motion.size(); ++i) {
     stream::MotionSample& sample = decoded.motion[i];
+    const std::int64_t sampled_ns = timing_.TimeOf(decoded, i, before_ns);
     Stamp(report, sample);
-    if (i + 1 < decoded.motion_count) {
-      sample.sampled_ns = timing_.EarlierNs(decoded.motion_count - 1 - i, before_ns);
-    }
+    sample.sampled_ns = sampled_ns;
     sample.report_count = timing_.statistics().reports();
     motion_.Take(sample, measured);
     counters_.repeats += sample.repeated && measured ? 1 : 0;
     counters_.clipped += sample.clipped_axes != 0 ? 1 : 0;
-    content.motion.push_back(sample);
-  }
-}
-
-void Device::TakeTimedMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
-                             TickContent& content) {
-  for (decode::TimedMotion& timed : decoded.timed_motion) {
-    const bool newest = &timed == &decoded.timed_motion.back();
-    stream::MotionSample& sample = timed.sample;
-    const std::int64_t before_ns = timing_.sampled_ns();
-    if (newest) timing_.TakeTimed(report.received_ns, timed.sampled_ns);
-    Stamp(report, sample);
-    // Between the report before and the newest one of this.
-    if (!newest) sample.sampled_ns = std::clamp(timed.sampled_ns, before_ns, report.received_ns);
-    sample.report_count = timing_.statistics().reports();
-    motion_.Take(sample, true);
-    counters_.repeats += sample.repeated ? 1 : 0;
     content.motion.push_back(sample);
   }
 }

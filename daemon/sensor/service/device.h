@@ -90,24 +90,25 @@ class SampleTiming {
 
   /// The samples of a report, new or repeated.
   void Take(std::int64_t received_ns, const decode::Decoded& decoded);
-  /// A report whose newest sample has a time of the device's own.
-  void TakeTimed(std::int64_t received_ns, std::int64_t sampled_ns);
   /// Time of the newest sample; never goes back.
   std::int64_t sampled_ns() const { return sampled_ns_; }
-  /// Time of the sample `back` before the newest of the newest report; `before_ns` is the newest
-  /// sample of the report before.
-  std::int64_t EarlierNs(std::size_t back, std::int64_t before_ns) const;
+  /// Time of motion sample `i` of the report that was taken last; `before_ns` is the newest sample
+  /// of the report before.
+  std::int64_t TimeOf(const decode::Decoded& decoded, std::size_t i, std::int64_t before_ns) const;
 
   /// How well sample times are known (link::DeviceClock::sampled_sd_s), s; negative: not yet.
-  double sampled_sd_s() const { return clock_.sampled_sd_s(); }
+  double sampled_sd_s() const {
+    return own_times_ ? own_clock_.sampled_sd_s() : clock_.sampled_sd_s();
+  }
   const link::LinkStatistics& statistics() const { return statistics_; }
 
  private:
   decode::Timing timing_;
   link::DeviceClock clock_;
+  link::OwnClock own_clock_;
+  bool own_times_ = false;  ///< Those of the newest report.
   link::LinkStatistics statistics_{0.01};
   std::int64_t sampled_ns_ = 0;
-  std::int64_t spacing_ns_ = 0;  ///< Between the samples of the newest report.
 };
 
 /// Everything that one tick publishes.
@@ -225,8 +226,6 @@ class Device {
   void Restart();
   void TakeMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
                   std::int64_t before_ns, TickContent& content);
-  void TakeTimedMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
-                       TickContent& content);
   void TakeBoard(const devices::IncomingReport& report, const decode::BoardReading& reading,
                  TickContent& content);
   void TakeDecoded(const devices::IncomingReport& report, decode::Decoded& decoded,

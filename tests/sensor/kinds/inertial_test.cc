@@ -1,14 +1,17 @@
 #include "daemon/sensor/kinds/inertial.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
 #include "common/stream/product_ids.h"
+#include "common/virtual/devices/phone.h"
 
 namespace footing::inertial {
 namespace {
@@ -90,42 +93,48 @@ TEST(InertialReport, RefusesWhatNoSensorSends) {
       ReportOf(0, 1000, std::vector<Measured>(reports::kMostInertialSamples + 1))));
 }
 
-TEST(OwnClock, TimesAreThoseOfTheFastestReports) {
-  // The device's clock is 5 s behind; reports take 4 ms and every fifth one 120 ms more.
-  OwnClock clock;
-  const std::int64_t behind_ns = 5'000 * kMs;
-  for (int i = 0; i < 200; ++i) {
-    const std::int64_t device_ns = (1'000 + 50 * i) * kMs;
-    const std::int64_t delay_ns = (i % 5 == 3 ? 124 : 4) * kMs;
-    clock.Take(device_ns + behind_ns + delay_ns, device_ns);
-    EXPECT_EQ(clock.HostNs(device_ns), device_ns + behind_ns + 4 * kMs) << i;
-  }
-}
-
-TEST(OwnClock, ADeviceThatStartsAgainIsFollowedAtOnce) {
-  OwnClock clock;
-  clock.Take(100'000 * kMs, 90'000 * kMs);
-  clock.Take(101'000 * kMs, 3 * kMs);  // Its page was loaded again.
-  EXPECT_EQ(clock.HostNs(3 * kMs), 101'000 * kMs);
-  clock.Take(102'000 * kMs, 900'000 * kMs);  // And one from the future.
-  EXPECT_EQ(clock.HostNs(900'000 * kMs), 102'000 * kMs);
-}
-
-TEST(InertialSensor, BunchedSamplesKeepTheirOwnTimes) {
+TEST(InertialSensor, SamplesHaveTheTimesOfItsOwnClock) {
   InertialSensor sensor;
   ASSERT_TRUE(sensor.live());
   ASSERT_TRUE(Take(sensor, 1'000 * kMs, ReportOf(0, 500'000, {{0}})));
-  // Three samples, 16 ms apart, arrive together 100 ms late.
   const auto decoded = Take(sensor, 1'148 * kMs, ReportOf(1, 548'000, {{32'000}, {16'000}, {0}}));
   ASSERT_TRUE(decoded);
-  ASSERT_EQ(decoded->timed_motion.size(), 3u);
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(decoded->timed_motion[static_cast<std::size_t>(i)].sampled_ns,
-              (1'016 + 16 * i) * kMs);
+  EXPECT_TRUE(decoded->own_times);
+  ASSERT_EQ(decoded->motion.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(decoded->motion[i].sampled_ns, (516 + 16 * static_cast<std::int64_t>(i)) * kMs);
   }
   EXPECT_TRUE(sensor.Note(0).empty());
   ASSERT_TRUE(Take(sensor, 1'200 * kMs, ReportOf(4, 600'000, {{0}})));
   EXPECT_EQ(sensor.Note(0), "2 of its reports were lost on the way");
+}
+
+TEST(InertialSensor, ASimulatedPhoneMeasuresInStepsUpToItsRange) {
+  std::vector<long> ranges_g;
+  std::vector<std::uint8_t> signs;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    virtual_devices::Phone phone(seed);
+    InertialSensor sensor;
+    for (std::int64_t ms = 1000; ms < 1100; ms += 5) {
+      phone.Feel(ms * kMs, {{2, 500, -9.8}, {0.5, 0, 0}});
+    }
+    const auto report = phone.Event(1100 * kMs);
+    const auto decoded = Take(sensor, 1150 * kMs, report);
+    ASSERT_TRUE(decoded) << seed;
+    const stream::MotionSample& sample = decoded->motion.at(0);
+    EXPECT_NEAR(sample.specific_force_mps2.x(), 2, 0.2) << seed;
+    EXPECT_NEAR(sample.specific_force_mps2.y(), phone.range_mps2(), 0.06) << seed;
+    for (const double value : sample.specific_force_mps2) {
+      EXPECT_NEAR(std::remainder(value, 0.1), 0, 1e-4) << seed;
+    }
+    EXPECT_NEAR(sample.angular_velocity_radps.x(), 0.5, 0.02) << seed;
+    ranges_g.push_back(std::lround(phone.range_mps2() / kStandardGravityMps2));
+    signs.push_back(report[1] & reports::kInertialInverted);
+  }
+  for (const long range_g : {4, 8, 16}) {
+    EXPECT_GT(std::count(ranges_g.begin(), ranges_g.end(), range_g), 0) << range_g;
+  }
+  EXPECT_EQ(std::set(signs.begin(), signs.end()).size(), 2u);
 }
 
 TEST(InertialSensor, VibrationIsAskedForAgainUntilItEnds) {

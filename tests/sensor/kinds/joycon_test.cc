@@ -227,7 +227,7 @@ TEST_P(Recorded, GravityAtRestIsOneGAndTheGyroscopesModeIsSeen) {
     const auto report = reports::DecodeJoycon(line.bytes);
     if (!line.from_device || !report || !report->has_samples) continue;
     const auto decoded = kind->Take(typical, SecondsToNanoseconds(line.time_s), *report);
-    for (std::size_t i = 0; i < decoded.motion_count; ++i) {
+    for (std::size_t i = 0; i < decoded.motion.size(); ++i) {
       ++with_motion;
       with_rates += decoded.motion[i].has_angular_velocity ? 1 : 0;
       window.push_back(decoded.motion[i]);
@@ -327,7 +327,7 @@ class Conversation {
     ASSERT_TRUE(decoded);
     if (decoded->empty()) return;
     newest = decoded;
-    samples += static_cast<int>(decoded->motion_count);
+    samples += static_cast<int>(decoded->motion.size());
   }
 
   noise::Random random_;
@@ -354,16 +354,17 @@ TEST_P(EachModel, IsSetUpAndMeasuresWhatItFeels) {
   EXPECT_EQ(one.kind->Note(one.now_ns), "");
   EXPECT_NEAR(one.samples, 200, 6);
   ASSERT_TRUE(one.newest);
-  ASSERT_EQ(one.newest->motion_count, 3u);
+  ASSERT_EQ(one.newest->motion.size(), 3u);
   for (const auto& sample : one.newest->motion) {
     EXPECT_LT((sample.specific_force_mps2 - Eigen::Vector3d(20, -30, 60)).norm(), 0.003);
     EXPECT_LT((sample.angular_velocity_radps - Eigen::Vector3d(3, -5, 20)).norm(), 0.002);
     EXPECT_EQ(sample.clipped_axes, 0u);
     EXPECT_FALSE(sample.uncalibrated);
   }
-  ASSERT_TRUE(one.newest->own_time);
-  EXPECT_DOUBLE_EQ(one.newest->own_time->since_before_s, 0.015);
-  EXPECT_DOUBLE_EQ(one.newest->own_time->spacing_s, 0.005);
+  ASSERT_TRUE(one.newest->own_times);
+  const auto& motion = one.newest->motion;
+  EXPECT_EQ(motion[2].sampled_ns - motion[1].sampled_ns, 5'000'000);
+  EXPECT_EQ(motion[1].sampled_ns - motion[0].sampled_ns, 5'000'000);
   ASSERT_TRUE(one.newest->nunchuk);
   EXPECT_EQ(one.newest->nunchuk->stick_x, 1);
   EXPECT_NEAR(one.newest->nunchuk->stick_y, -0.5, 0.001);
@@ -519,7 +520,7 @@ TEST(Joycon, SampleTimesKeepToTheDevicesOwnClockOverALink) {
     virtual_devices::LinkModel link(
         virtual_devices::JoyconLink(virtual_devices::LinkQuality::kGood, 3), 0);
     noise::Random random(4);
-    link::DeviceClock clock({.nominal_period_s = 0.015, .max_lag_s = 0.08});
+    link::OwnClock clock(0.015);
     reports::JoyconTimer timer;
     link::SampledTimeError error;
     for (int i = 0; i < 4000; ++i) {
@@ -527,10 +528,10 @@ TEST(Joycon, SampleTimesKeepToTheDevicesOwnClockOverALink) {
       if (random.Uniform() < 0.1) continue;  // Lost; the timer byte shows it.
       const auto own_ns = static_cast<std::int64_t>(rate * static_cast<double>(arrival.sampled_ns));
       const auto count = static_cast<std::uint8_t>(own_ns / 5'000'000);
-      const auto elapsed_s = timer.Advance(arrival.arrives_ns, count);
-      const std::int64_t at_ns = clock.Advance(arrival.arrives_ns, true, elapsed_s);
-      EXPECT_LE(at_ns, arrival.arrives_ns);
-      if (i > 400) error.Add(at_ns, arrival.sampled_ns);
+      const auto timer_ns = timer.Advance(arrival.arrives_ns, count);
+      if (!timer_ns) continue;
+      clock.Take(arrival.arrives_ns, *timer_ns);
+      if (i > 400) error.Add(clock.HostNs(*timer_ns), arrival.sampled_ns);
     }
     RecordProperty("rms_us_" + std::to_string(static_cast<int>(1000 * rate)),
                    static_cast<int>(1000 * error.rms_ms()));

@@ -8,6 +8,7 @@
 
 #include "common/virtual/devices/link_model.h"
 #include "common/virtual/devices/noise.h"
+#include "common/virtual/devices/phone.h"
 #include "daemon/sensor/reports/device_clock.h"
 #include "tests/sensor/reports/sampled_time_error.h"
 
@@ -20,6 +21,7 @@ using virtual_devices::LinkModel;
 using virtual_devices::LinkQuality;
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kMillisecondNs = 1'000'000;
 /// The ticks are found within that long after the start and after a suspension; what comes before
 /// is not counted.
 constexpr std::int64_t kSettledNs = 5 * kSecondNs;
@@ -324,6 +326,63 @@ TEST(DeviceClock, StartsAnewAfterAPause) {
   DeviceClock clock;
   for (int i = 0; i < 100; ++i) clock.Advance(i * std::int64_t{10'000'000});
   EXPECT_EQ(clock.Advance(30'000'000'000), 30'000'000'000);
+}
+
+TEST(OwnClock, TimesAreThoseOfTheFastestReports) {
+  // The device's clock is 5 s behind; reports take 4 ms and every fifth one 120 ms more.
+  OwnClock clock;
+  const std::int64_t behind_ns = 5'000 * kMillisecondNs;
+  for (int i = 0; i < 200; ++i) {
+    const std::int64_t device_ns = (1'000 + 50 * i) * kMillisecondNs;
+    const std::int64_t delay_ns = (i % 5 == 3 ? 124 : 4) * kMillisecondNs;
+    clock.Take(device_ns + behind_ns + delay_ns, device_ns);
+    EXPECT_NEAR(static_cast<double>(clock.HostNs(device_ns)),
+                static_cast<double>(device_ns + behind_ns + 4 * kMillisecondNs), 10)
+        << i;
+  }
+}
+
+TEST(OwnClock, ADeviceThatStartsAgainIsFollowedAtOnce) {
+  OwnClock clock;
+  clock.Take(100'000 * kMillisecondNs, 90'000 * kMillisecondNs);
+  clock.Take(101'000 * kMillisecondNs, 3 * kMillisecondNs);  // Its page was loaded again.
+  EXPECT_EQ(clock.HostNs(3 * kMillisecondNs), 101'000 * kMillisecondNs);
+  clock.Take(102'000 * kMillisecondNs, 900'000 * kMillisecondNs);  // And one from the future.
+  EXPECT_EQ(clock.HostNs(900'000 * kMillisecondNs), 102'000 * kMillisecondNs);
+}
+
+TEST(OwnClock, FollowsAClockOfAnotherRate) {
+  // A clock that is 1 % fast, as a Joy-Con's timer may be, over the link of one: every 15 ms.
+  for (const double rate : {0.99, 1.0, 1.01}) {
+    LinkModel link(virtual_devices::JoyconLink(LinkQuality::kGood, 5), 0);
+    OwnClock clock(0.015);
+    SampledTimeError error;
+    EXPECT_LT(clock.sampled_sd_s(), 0);
+    for (int i = 0; i < 8000; ++i) {
+      const auto arrival = link.Next();
+      const auto own_ns = static_cast<std::int64_t>(rate * static_cast<double>(arrival.sampled_ns));
+      clock.Take(arrival.arrives_ns, own_ns);
+      if (arrival.arrives_ns < kSettledNs) continue;
+      error.Add(clock.HostNs(own_ns), arrival.sampled_ns);
+      EXPECT_LT(clock.sampled_sd_s(), 0.002);
+    }
+    EXPECT_LT(error.rms_ms(), 0.5) << rate;
+    EXPECT_LT(error.p99_ms(), 1.5) << rate;
+  }
+}
+
+TEST(OwnClock, BunchesOfWiFiDoNotMoveTheTimesOfAPhone) {
+  LinkModel link(virtual_devices::PhoneLink(LinkQuality::kGood, 6), 0);
+  OwnClock clock;
+  SampledTimeError error;
+  for (int i = 0; i < 8000; ++i) {
+    const auto arrival = link.Next();
+    const std::int64_t own_ns = arrival.sampled_ns + arrival.sampled_ns / 20'000;  // 50 ppm fast.
+    clock.Take(arrival.arrives_ns, own_ns);
+    if (arrival.arrives_ns < kSettledNs) continue;
+    error.Add(clock.HostNs(own_ns), arrival.sampled_ns);
+  }
+  EXPECT_LT(error.p99_ms(), 3);  // Arrivals are 50 to 300 ms apart.
 }
 
 TEST(LinkStatistics, SteadyReportsHaveTheirRateAndNoJitter) {
