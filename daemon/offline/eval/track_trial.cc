@@ -266,7 +266,7 @@ class TrackTrial {
     driver_.SeeTrack(engine_.track());
     if (user.interface) {
       embodied_.emplace(Embodied{{*user.interface, StyleOf(user), user.seed, user.turn_by},
-                                 {*user.interface, user.turn_by, user.seed, user.joycons}});
+                                 {*user.interface, user.turn_by, user.seed, user.devices}});
     }
     if (embodied_) WaitForTrial();
     inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), user.seed)};
@@ -304,7 +304,7 @@ class TrackTrial {
                                 .turn_per_step_rad = wanted.turn_rad};
       return;
     }
-    embodied_->person.Advance(time_s - HeldJoycons::kStepS, wanted);
+    embodied_->person.Advance(time_s - HeldDevices::kStepS, wanted);
     embodied_->devices.Feel(embodied_->person.felt());
     embodied_->person.Advance(time_s, wanted);
     inputs_.features = embodied_->devices.Take(embodied_->person.felt());
@@ -429,9 +429,11 @@ std::vector<features::Member> MembersFor(UserInterface interface, TurnSource tur
 }  // namespace
 
 UserDevices::UserDevices(UserInterface interface, TurnSource turn_by, std::uint64_t seed,
-                         bool joycons)
+                         HeldKind kind)
     : interface_(interface), random_(seed), chain_(MembersFor(interface, turn_by)) {
-  if (joycons) joycons_ = std::make_unique<HeldJoycons>(stream::RolesOf(interface, turn_by), seed);
+  if (kind != HeldKind::kWiimote) {
+    held_ = std::make_unique<HeldDevices>(kind, stream::RolesOf(interface, turn_by), seed);
+  }
   for (const std::uint64_t board : {1u, 2u}) {
     cells_.emplace_back(virtual_sensors::CellErrorConfig{
         .gain_spread = kCellGainSpread, .noise_kg = kCellNoiseKg, .seed = seed + board});
@@ -439,12 +441,12 @@ UserDevices::UserDevices(UserInterface interface, TurnSource turn_by, std::uint6
 }
 
 void UserDevices::Feel(const users::Felt& felt) {
-  if (joycons_) joycons_->Feel(felt);
+  if (held_) held_->Feel(felt);
 }
 
-void UserDevices::TakeJoycons(const users::Felt& felt) {
-  joycons_->Feel(felt);
-  const sensor::TickContent content = joycons_->Tick();
+void UserDevices::TakePublished(const users::Felt& felt) {
+  held_->Feel(felt);
+  const sensor::TickContent content = held_->Tick();
   if (interface_ != UserInterface::kJoystick) {
     if (!content.features.empty()) TakeFeatures(content.features.front());
     return;
@@ -516,8 +518,8 @@ void UserDevices::TakeBoards(const users::Felt& felt) {
 
 mapping::Inputs UserDevices::Take(const users::Felt& felt) {
   ++ticks_;
-  if (joycons_) {
-    TakeJoycons(felt);
+  if (held_) {
+    TakePublished(felt);
     return inputs_;
   }
   switch (interface_) {

@@ -19,7 +19,7 @@
 #include "daemon/offline/analysis/features_chain.h"
 #include "daemon/offline/eval/gait.h"
 #include "daemon/offline/eval/gait_trial.h"
-#include "daemon/offline/eval/held_joycons.h"
+#include "daemon/offline/eval/held_devices.h"
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/mapping/inputs.h"
 
@@ -157,8 +157,8 @@ struct TrackUser {
   /// How the remotes are rotated in the hands; none: as the user's style has it.
   std::optional<users::GripWish> grip = {};
   users::StyleWish style = {};
-  bool joycons = false;            ///< In place of Wiimotes; not with boards.
-  std::string mapping_table = {};  ///< Path; empty: the built-in one.
+  HeldKind devices = HeldKind::kWiimote;                   ///< Not with boards.
+  std::string mapping_table = {};                          ///< Path; empty: the built-in one.
   stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< Used by the leg interface.
   std::uint64_t seed = 1;  ///< Seed of the user's style and noise, the task and the push.
   /// Begins in mid-run: nobody has seen the limbs at rest. Else stands before the start line.
@@ -189,14 +189,14 @@ Result<TrackResult> RunTrack(const std::string& track, const TrackUser& user, Tr
 
 /// The devices of a synthetic user and footingd's chain behind them: what the sensors make of what
 /// they feel, then features, stick, or corner forces and COP. Of the kinds that the user has.
-/// Joy-Cons go through their protocol and footingd's hub (HeldJoycons).
+/// Joy-Cons and phones go through their protocol and footingd's hub (HeldDevices).
 class UserDevices {
  public:
   static constexpr double kTickS = 0.01;
 
   /// `turn_by` is of the leg interface.
   UserDevices(stream::UserInterface interface, stream::TurnSource turn_by, std::uint64_t seed,
-              bool joycons = false);
+              HeldKind kind = HeldKind::kWiimote);
 
   /// Half a tick before Take.
   void Feel(const users::Felt& felt);
@@ -205,7 +205,7 @@ class UserDevices {
 
  private:
   void TakeRemotes(const users::Felt& felt);
-  void TakeJoycons(const users::Felt& felt);
+  void TakePublished(const users::Felt& felt);
   void TakeFeatures(const stream::RigFeatures& features);
   void TakeStick(const users::Felt& felt);
   void TakeBoards(const users::Felt& felt);
@@ -214,7 +214,7 @@ class UserDevices {
   noise::Random random_;
   wrists::SensorModel sensor_;
   Chain chain_;
-  std::unique_ptr<HeldJoycons> joycons_;
+  std::unique_ptr<HeldDevices> held_;  ///< Null: Wiimotes or boards.
   std::vector<virtual_sensors::CellErrors> cells_;
   std::array<board::Plate, 2> plates_;
   std::int64_t ticks_ = 0;

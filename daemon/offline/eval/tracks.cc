@@ -45,6 +45,9 @@ struct TrackOptions {
   std::string trace;
 };
 
+const std::map<std::string, HeldKind> kHeldKinds = {
+    {"wiimote", HeldKind::kWiimote}, {"joycon", HeldKind::kJoycon}, {"phone", HeldKind::kPhone}};
+
 struct TrackTrials {
   int completed = 0;
   int without_failure = 0;
@@ -81,9 +84,14 @@ Result<TrackUser> UserFor(const TrackOptions& options) {
   if (!user.interface && (styled || !options.table.empty())) {
     return UsageError("--interface direct has neither a body nor a mapping table");
   }
-  user.joycons = options.devices == "joycon";
-  if (user.joycons && (!user.interface || *user.interface == stream::UserInterface::kBoards)) {
+  user.devices = kHeldKinds.at(options.devices);
+  const bool no_body = !user.interface || *user.interface == stream::UserInterface::kBoards;
+  if (user.devices == HeldKind::kJoycon && no_body) {
     return UsageError("--devices joycon needs --interface wrist, arm, leg or joystick");
+  }
+  if (user.devices == HeldKind::kPhone &&
+      (no_body || *user.interface == stream::UserInterface::kJoystick)) {
+    return UsageError("--devices phone needs --interface wrist, arm or leg");
   }
   user.style = options.style;
   user.mapping_table = options.table;
@@ -250,8 +258,8 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
       "Body part that steers with the interface leg: head, feet or trunk (default head)");
   command
       ->add_option("--devices", options->devices,
-                   "Devices that the user holds: wiimote or joycon (default wiimote)")
-      ->check(CLI::IsMember({"wiimote", "joycon"}));
+                   "Devices that the user holds: wiimote, joycon or phone (default wiimote)")
+      ->check(CLI::IsMember(kHeldKinds));
   command
       ->add_option("--seconds", options->seconds,
                    "Duration of a trial, s (default: to the finish line, at most 600)")

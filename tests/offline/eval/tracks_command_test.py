@@ -40,6 +40,12 @@ for interface in ("direct", "wrist", "arm", "leg", "joystick", "boards"):
     assert out["jump_to_command"] == out["jump_to_take_off"] == {"count": 0, "mean_s": 0, "sd_s": 0}, out
     assert out["jumps"] == {"meant": 0, "recognised": 0, "late": 0, "recall": 1, "commanded": 0, "not_meant": 0}, out
 
+# Joy-Cons, and phones over Wi-Fi, in place of Wiimotes: by their protocols and footingd's hub.
+for devices, interface in (("joycon", "arm"), ("phone", "wrist")):
+    out = report("--interface", interface, "--track", "curves", "--seed", 21, "--devices", devices)
+    assert out["devices"] == devices and out["completed"] == 1 and out["gait_agreement"] > 0.9, out
+    assert out["failures"] == dict.fromkeys(CAUSES, 0), out
+
 # Every task of the straight track is drawn, done and paid for with few failures.
 out = report("--interface", "wrist", "--track", "straight", "--trials", 12, "--seed", 2)
 assert out["trials"] == out["completed"] == sum(out["tasks"].values()) == 12, out
@@ -120,6 +126,8 @@ for words, code, listed in ((("--interface", "telepathy"), 2, "wrist, arm, leg, 
                             (("--interface", "arm", "--turn-by", "feet"), 2, "leg"),
                             (("--interface", "direct", "--tempo", "0.9"), 2, "neither a body nor a mapping table"),
                             (("--interface", "wrist", "--asymmetry", "0.9"), 2, "asymmetry"),
+                            (("--interface", "boards", "--devices", "joycon"), 2, "wrist, arm, leg or joystick"),
+                            (("--interface", "joystick", "--devices", "phone"), 2, "wrist, arm or leg"),
                             (("--track", "9"), 2, "there are: 1, 2, 3, 4, build"),
                             (("--track", "endless"), 2, "no finish line"),
                             (("--trials", "0"), 2, "")):
