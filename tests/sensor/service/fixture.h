@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/virtual/devices/controller.h"
+#include "common/virtual/devices/joycon.h"
 #include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/service/hub.h"
 
@@ -21,7 +22,8 @@ namespace footing::sensor {
 /// report of every attached model a tick.
 class Bench {
  public:
-  using Model = std::variant<virtual_devices::Wiimote, virtual_devices::BalanceBoard>;
+  using Model = std::variant<virtual_devices::Wiimote, virtual_devices::BalanceBoard,
+                             virtual_devices::Joycon>;
 
   explicit Bench(const Config& config = {}, const setup::Storage& storage = {})
       : hub_(config, {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
@@ -102,13 +104,34 @@ class Bench {
     if (auto* wiimote = std::get_if<virtual_devices::Wiimote>(&model)) {
       return wiimote->Sample(force(static_cast<double>(now_ns_) * 1e-9));
     }
+    if (auto* joycon = std::get_if<virtual_devices::Joycon>(&model)) return Sample(*joycon);
     return std::get<virtual_devices::BalanceBoard>(model).Sample(corners);
+  }
+  /// Every 15 ms, at the tick that follows.
+  std::optional<virtual_devices::Report> Sample(virtual_devices::Joycon& joycon) const {
+    constexpr std::int64_t kPeriodNs = 15'000'000, kSpacingNs = 5'000'000;
+    if (now_ns_ % kPeriodNs >= 10'000'000) return std::nullopt;
+    const std::int64_t newest_ns = now_ns_ - now_ns_ % kPeriodNs;
+    virtual_devices::JoyconBurst burst;
+    for (std::size_t i = 0; i < burst.size(); ++i) {
+      const std::int64_t at_ns = newest_ns - static_cast<std::int64_t>(2 - i) * kSpacingNs;
+      burst[i].specific_force_S_mps2 = force(static_cast<double>(at_ns) * 1e-9);
+    }
+    const auto reports = joycon.Sample(newest_ns, burst);
+    return reports.empty() ? std::nullopt : std::optional(reports.front());
   }
   void Answer(devices::DeviceHandle handle, const reports::OutputReport& report) {
     const auto model = models_.find(handle);
     if (model == models_.end()) return;
-    auto answers =
-        std::visit([&report](auto& one) { return one.HandleOutput(report); }, model->second);
+    auto answers = std::visit(
+        [&](auto& one) {
+          if constexpr (requires { one.HandleOutput(report); }) {
+            return one.HandleOutput(report);
+          } else {
+            return one.HandleOutput(now_ns_, report);
+          }
+        },
+        model->second);
     for (auto& answer : answers) answers_.emplace_back(handle, std::move(answer));
   }
   void Append(TickContent tick) {

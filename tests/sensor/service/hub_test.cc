@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "common/base/units.h"
 #include "common/stream/roles.h"
+#include "common/virtual/devices/phone.h"
 #include "tests/sensor/service/fixture.h"
 
 namespace footing::sensor {
@@ -19,6 +21,7 @@ using stream::DeviceState;
 using testing::HasSubstr;
 using testing::Not;
 using virtual_devices::BalanceBoard;
+using virtual_devices::Joycon;
 using virtual_devices::Wiimote;
 
 /// One count of y and z is 9 bits: about 19 mg.
@@ -264,6 +267,40 @@ TEST(Hub, TheMotorStopsWithItsLeaseItsSessionAndTheDaemon) {
   EXPECT_FALSE(bench.hub().SetRumble(7, 99, true, 1));
 }
 
+TEST(Hub, SamplesThatArriveTogetherKeepTheTimesOfTheirOwnClock) {
+  Bench bench;
+  virtual_devices::Phone phone(3);
+  devices::DeviceIdentity identity;
+  identity.vendor = phone.identity().vendor;
+  identity.product = phone.identity().product;
+  identity.serial = "phone";
+  constexpr devices::DeviceHandle kPhone = 77;
+  bench.hub().OnAttach(kPhone, identity);
+  // 60 events a second; every twelve arrive together, the last of them at once.
+  constexpr std::int64_t kEventNs = 16'666'667;
+  std::vector<std::int64_t> truth_ns;
+  std::vector<virtual_devices::Report> waiting;
+  while (truth_ns.size() < 600) {
+    truth_ns.push_back(bench.now_ns() + static_cast<std::int64_t>(waiting.size()) * kEventNs);
+    phone.Feel(truth_ns.back(), {});
+    waiting.push_back(phone.Event(truth_ns.back()));
+    if (waiting.size() < 12) continue;
+    bench.Advance(0.2);
+    for (const auto& report : waiting) bench.Receive(kPhone, report);
+    waiting.clear();
+  }
+  bench.Advance(0.01);
+  ASSERT_EQ(bench.content.motion.size(), truth_ns.size());
+  for (std::size_t i = 60; i < truth_ns.size(); ++i) {
+    const auto& sample = bench.content.motion[i];
+    EXPECT_LE(sample.sampled_ns, sample.received_ns);
+    const std::int64_t step_ns = sample.sampled_ns - bench.content.motion[i - 1].sampled_ns;
+    EXPECT_NEAR(static_cast<double>(step_ns), static_cast<double>(truth_ns[i] - truth_ns[i - 1]),
+                3e5);  // The browser's clock has steps of 0.1 ms.
+  }
+  EXPECT_GE(bench.StatusOf("phone").clock_offset_sd_ms, 0);
+}
+
 TEST(Hub, RawReportsOfBothDirectionsAreKept) {
   Bench bench;
   bench.Attach(Wiimote(1));
@@ -275,6 +312,41 @@ TEST(Hub, RawReportsOfBothDirectionsAreKept) {
   }
   EXPECT_GT(in, 40u);
   EXPECT_GE(out, 4u);  // Status, calibration, mode, LEDs.
+}
+
+TEST(Hub, WhatAWiimoteClipsAJoyConMeasuresUpToItsFeatures) {
+  // Both hands swing together at 2 Hz to 6.6 g: a Wiimote ends at 4.9 g, a Joy-Con at 8 g.
+  constexpr double kSwingMps2 = 65, kHz = 2;
+  Bench bench;
+  bench.force = [](double t_s) {
+    return Eigen::Vector3d(0, kSwingMps2 * std::sin(2 * kPi * kHz * t_s), -kStandardGravityMps2);
+  };
+  bench.Attach(Wiimote(1), "wiimote");
+  bench.Attach(Joycon(2, virtual_devices::JoyconModel::kRight), "joycon");
+  bench.Advance(5);
+  EXPECT_GT(bench.StatusOf("wiimote").clipped, 100u);
+  EXPECT_EQ(bench.StatusOf("joycon").clipped, 0u);
+  const auto amplitude_of = [&bench](const std::string& serial) {
+    const auto& devices = bench.content.features.at(0).devices;
+    const auto found = std::find_if(devices.begin(), devices.end(), [&](const auto& one) {
+      return one.device == bench.StatusOf(serial).device;
+    });
+    EXPECT_TRUE(found->amplitude_valid) << serial;
+    return found->amplitude_mps2;
+  };
+  EXPECT_NEAR(amplitude_of("joycon"), kSwingMps2, 0.02 * kSwingMps2);
+  std::map<std::uint32_t, double> peak_mps2;
+  for (const auto& sample : bench.content.motion) {
+    double& peak = peak_mps2[sample.device];
+    peak = std::max(peak, std::abs(sample.specific_force_mps2.y()));
+  }
+  // A Wiimote's features fill its peaks in, by a fit to what it measured below them.
+  EXPECT_LT(peak_mps2[bench.StatusOf("wiimote").device], 0.8 * kSwingMps2);
+  EXPECT_NEAR(peak_mps2[bench.StatusOf("joycon").device], kSwingMps2, 0.5);
+  bench.content = {};
+  bench.force = [](double) { return Eigen::Vector3d(0, 8.5 * kStandardGravityMps2, 0); };
+  bench.Advance(0.5);
+  EXPECT_GT(bench.StatusOf("joycon").clipped, 50u);
 }
 
 TEST(Hub, ClippedSamplesAreFlaggedAndCounted) {
