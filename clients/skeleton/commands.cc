@@ -13,6 +13,7 @@
 #include "common/net/address.h"
 #include "common/net/device_link.h"
 #include "common/net/socket.h"
+#include "common/net/udp.h"
 #include "common/runtime/files.h"
 #include "common/runtime/log.h"
 
@@ -83,7 +84,7 @@ struct ReceiverFlags {
     const auto parsed = dialect.Options();
     if (!parsed) return parsed.error();
     options.tracker.dialect = *parsed;
-    const auto at = ParseUdp(listen, "--listen");
+    const auto at = transport::ParseUdp(listen, "--listen");
     if (!at) return at.error();
     options.listen = *at;
     if (!no_publish) {
@@ -177,7 +178,7 @@ void AddSend(CLI::App& app, Shared& shared) {
     const auto run = [&]() -> Result<nlohmann::ordered_json> {
       const auto dialect = flags->dialect.Options();
       if (!dialect) return dialect.error();
-      const auto to = ParseUdp(flags->to, "--to");
+      const auto to = transport::ParseUdp(flags->to, "--to");
       if (!to) return to.error();
       flags->options.dialect_options = *dialect;
       flags->options.to = *to;

@@ -30,8 +30,4 @@ struct Reception {
 /// Receives until its end. Failure when it cannot listen.
 Result<Reception> RunReceiver(const ReceiverOptions& options);
 
-/// "HOST:PORT" with a numeric host, "localhost" or "[IPv6]"; a usage error names `option`. Port 0
-/// is for a listener only: the system chooses one.
-Result<boost::asio::ip::udp::endpoint> ParseUdp(const std::string& text, const std::string& option);
-
 }  // namespace footing::skeleton

@@ -3,16 +3,19 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/address_v4.hpp>
 #include <boost/asio/ip/udp.hpp>
 
 #include "clients/stream/sensor_packets.h"
 #include "common/net/device_link.h"
 #include "common/net/limits.h"
 #include "common/net/socket.h"
+#include "common/net/udp.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/log.h"
 #include "common/runtime/service_manager.h"
@@ -58,6 +61,12 @@ struct Roles {
   }
 };
 
+/// Without the prefix under which an IPv6 socket sees those of IPv4.
+std::string NameOf(const asio::ip::address& sender) {
+  if (!sender.is_v6() || !sender.to_v6().is_v4_mapped()) return sender.to_string();
+  return asio::ip::make_address_v4(asio::ip::v4_mapped, sender.to_v6()).to_string();
+}
+
 class Receiver {
  public:
   Receiver(const SensorsOptions& options, Roles roles, const transport::Address& to)
@@ -69,24 +78,19 @@ class Receiver {
                     .on_close = [] { log::Warning("footingd is gone; waiting for it"); }}) {}
 
   Result<void> Run(double seconds) {
-    const auto address = transport::ParseAddress("tcp:" + options_.listen);
+    const auto at = transport::ParseUdp(options_.listen, "--listen");
+    if (!at) return at.error();
     boost::system::error_code error;
-    const auto host = asio::ip::make_address(address ? address->host : "", error);
-    if (!address || error) {
-      return UsageError("--listen " + options_.listen +
-                        ": must be HOST:PORT with a numeric host, such as 127.0.0.1:6969");
-    }
-    const udp::endpoint at(host, address->port);
-    socket_.open(at.protocol(), error);
-    if (!error) socket_.bind(at, error);
+    socket_.open(at->protocol(), error);
+    if (!error) socket_.bind(*at, error);
     if (!error) socket_.non_blocking(true, error);
     if (error) {
       return Failure("cannot listen on UDP " + options_.listen + ": " +
                      transport::MessageOf(error) + "; choose another port with --listen");
     }
-    const auto bound = socket_.local_endpoint(error);
-    log::Info("listening for sensors on UDP " + bound.address().to_string() + ":" +
-              std::to_string(bound.port()));
+    std::ostringstream bound;
+    bound << socket_.local_endpoint(error);
+    log::Info("listening for sensors on UDP " + bound.str());
     link_.Start();
     end_.After(seconds, [this] {
       if (!link_.was_open()) result_ = link_.NeverOpen();
@@ -122,15 +126,15 @@ class Receiver {
     if (error) return false;  // No packet is waiting.
     const std::int64_t now_ns = clock::MonotonicNs();
     if (!bucket_.Spend(now_ns)) return true;
-    const SensorPacket packet =
-        packets_.Take(from.address().to_string(), now_ns, {bytes_.data(), size});
+    const std::string sender = NameOf(from.address());
+    const SensorPacket packet = packets_.Take(sender, now_ns, {bytes_.data(), size});
     for (const std::string& reply : packet.replies) {
       socket_.send_to(asio::buffer(reply), from, 0, error);
     }
     for (const SensorReport& one : packet.reports) Publish(one, now_ns);
     if (!packet.is_known && now_ns - said_unknown_ns_ > kQuietNs) {
       said_unknown_ns_ = now_ns;
-      log::Warning("a packet from " + from.address().to_string() +
+      log::Warning("a packet from " + sender +
                    " is of none of the protocols that are known; see footing-stream sensors "
                    "--help");
     }
@@ -235,7 +239,7 @@ CLI::App* AddSensorsCommand(CLI::App& app, SensorsOptions& options) {
       "sensors",
       "Real inertial sensors of the network: SlimeVR trackers, phones with Sensors2OSC or ZIG SIM, "
       "boards of your own (docs/devices.md)");
-  sensors->add_option("--listen", options.listen, "UDP address, HOST:PORT");
+  sensors->add_option("--listen", options.listen, "UDP address, HOST:PORT or [IPv6]:PORT");
   sensors->add_option("--role", options.roles,
                       "Role of the next sensor that comes, or SENSOR=ROLE; may be repeated");
   sensors->add_option("--rig", options.rig, "Rig of the sensors (default: as footingd's config)");

@@ -17,9 +17,10 @@ class Sensor:
     """A sender with an address of its own, as on a network."""
 
     def __init__(self, port, host):
-        self.stream = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        six = ":" in host
+        self.stream = socket.socket(socket.AF_INET6 if six else socket.AF_INET, socket.SOCK_DGRAM)
         self.stream.bind((host, 0))
-        self.stream.connect(("127.0.0.1", port))
+        self.stream.connect(("::1" if six else "127.0.0.1", port))
         self.number = 0
 
     def send(self, packet):
@@ -39,17 +40,30 @@ class SlimeVr(Sensor):
         self.send(struct.pack(">IQBhhhhhhh", 23, self.number, 0, 0, 0, 0, 32767, 0, round(128 * ahead_mps2), 0))
 
 
+def has_ipv6():
+    try:
+        with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as stream:
+            stream.bind(("::1", 0))
+    except OSError:
+        return False
+    return True
+
+
 def main():
     with harness.Stage(sys.argv[1]) as stage:
         stage.start_servers()
         port = free_port()
         refused = stage.run("footing-stream", "sensors", "--to", stage.devices, "--role", "left_ear")
         assert refused.returncode == 2 and "left_hand" in refused.stderr, refused
-        stage.start("footing-stream", "sensors", "--to", stage.devices, "--listen", f"127.0.0.1:{port}", "--role",
+        # Where there is IPv6 one socket hears both.
+        every, tracker = ("[::]", "::1") if has_ipv6() else ("0.0.0.0", "127.0.0.3")
+        wrong = stage.run("footing-stream", "sensors", "--to", stage.devices, "--listen", "::1:6969")
+        assert wrong.returncode == 2 and "--listen ::1:6969" in wrong.stderr and "[::1]" in wrong.stderr, wrong
+        stage.start("footing-stream", "sensors", "--to", stage.devices, "--listen", f"{every}:{port}", "--role",
                     "127.0.0.2=left_hand", "--role", "right_hand", name="sensors")
         log = stage.folder / "sensors.log"
         stage.wait_for(lambda: "listening" in log.read_text(), "the receiver")
-        right = SlimeVr(port, "127.0.0.3")
+        right = SlimeVr(port, tracker)
         right.send(struct.pack(">IQ", 3, 0) + bytes(40))
         assert right.stream.recv(100).startswith(b"\x03Hey OVR =D 5"), "the handshake is answered"
         left = OwnBoard(port, "127.0.0.2")
@@ -57,7 +71,7 @@ def main():
         stage.wait_for(lambda: "127.0.0.2 is of none of the protocols" in log.read_text(), "a line on what is unknown")
         swing_until_walking(stage, left, right)
         devices = devices_of(stage)
-        assert {(one["serial"], one["role"]) for one in devices} == {("127.0.0.2", "left_hand"), ("127.0.0.3", "right_hand")}
+        assert {(one["serial"], one["role"]) for one in devices} == {("127.0.0.2", "left_hand"), (tracker, "right_hand")}
         assert not any(one["simulated"] for one in devices), devices
         stage.wait_for(lambda: [one["state"] for one in devices_of(stage)] == ["lost", "lost"], "silent sensors are detached")
 

@@ -9,23 +9,16 @@
 #include <thread>
 
 #include "clients/skeleton/sender.h"
+#include "common/net/udp.h"
 #include "tests/clients/skeleton/clips.h"
 
 namespace footing::skeleton {
 namespace {
 
-TEST(ParseUdp, TakesHostsAndPorts) {
-  EXPECT_EQ(ParseUdp("127.0.0.1:7110", "--listen")->port(), 7110);
-  EXPECT_TRUE(ParseUdp("localhost:0", "--listen")->address().is_loopback());
-  EXPECT_TRUE(ParseUdp("[::1]:7110", "--listen")->address().is_v6());
-  for (const char* const wrong : {"", "7110", "host:7110", "127.0.0.1:", "127.0.0.1:70000", "::1"})
-    EXPECT_EQ(ParseUdp(wrong, "--listen").error().kind, ErrorKind::kUsage) << wrong;
-}
-
 /// A port that nobody listens on now.
 boost::asio::ip::udp::endpoint FreePort() {
   boost::asio::io_context io;
-  boost::asio::ip::udp::socket socket(io, *ParseUdp("127.0.0.1:0", ""));
+  boost::asio::ip::udp::socket socket(io, *transport::ParseUdp("127.0.0.1:0", ""));
   return socket.local_endpoint();
 }
 
@@ -108,7 +101,7 @@ TEST(Receiver, SaysWhenFootingdNeverCame) {
 
 TEST(Receiver, SaysWhenItsPortIsTaken) {
   boost::asio::io_context io;
-  const boost::asio::ip::udp::socket taken(io, *ParseUdp("127.0.0.1:0", ""));
+  const boost::asio::ip::udp::socket taken(io, *transport::ParseUdp("127.0.0.1:0", ""));
   ReceiverOptions options;
   options.listen = taken.local_endpoint();
   options.seconds = 1;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "common/net/socket.h"
+#include "common/net/udp.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::transport {
@@ -28,6 +29,20 @@ TEST(Address, WhatIsNoAddressIsAUsageErrorThatShowsTheRightForm) {
     ASSERT_FALSE(address.ok()) << text;
     EXPECT_EQ(address.error().kind, ErrorKind::kUsage);
     EXPECT_NE(address.error().message.find("unix:PATH"), std::string::npos);
+  }
+}
+
+TEST(ParseUdp, TakesHostsAndPorts) {
+  EXPECT_EQ(ParseUdp("127.0.0.1:7110", "--listen")->port(), 7110);
+  EXPECT_TRUE(ParseUdp("localhost:0", "--listen")->address().is_loopback());
+  EXPECT_TRUE(ParseUdp("[::1]:7110", "--listen")->address().is_v6());
+  EXPECT_TRUE(ParseUdp("[::]:6969", "--listen")->address().is_unspecified());
+  for (const char* const wrong : {"", "7110", "host:7110", "127.0.0.1:", "127.0.0.1:70000", "::1",
+                                  "::1:7110", "[127.0.0.1]:7110", "[]:7110", "127.0.0.1:-1"}) {
+    const auto parsed = ParseUdp(wrong, "--listen");
+    ASSERT_FALSE(parsed) << wrong;
+    EXPECT_EQ(parsed.error().kind, ErrorKind::kUsage);
+    EXPECT_EQ(parsed.error().message.rfind(std::string("--listen ") + wrong, 0), 0u);
   }
 }
 
