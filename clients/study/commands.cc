@@ -656,6 +656,7 @@ struct SimulateOptions {
   std::uint64_t seed = 1;
   int jobs = 0;
   bool real_time = false;
+  std::string devices = "wiimote";
 };
 
 /// Those that are asked for; all where none is named.
@@ -706,7 +707,7 @@ Result<Answer> Simulate(const SimulateOptions& given) {
   const auto times =
       simulate::SimulateStudy({loaded->path, loaded->text, loaded->folder, std::move(*sessions),
                                given.seed, given.jobs > 0 ? given.jobs : processors,
-                               given.real_time, loaded->protocol.settings.turn_by});
+                               given.real_time, loaded->protocol.settings.turn_by, given.devices});
   if (!times) return times.error();
   const double took_s = NanosecondsToSeconds(clock::MonotonicNs() - begin_ns);
   Answer answer{{{"folder", loaded->folder},
@@ -749,6 +750,10 @@ void AddSimulateCommand(CLI::App& app, Shared& shared) {
   command->add_flag(
       "--real-time", given->real_time,
       "On the host's time, as a live study, to measure latencies; best with --jobs 1");
+  command
+      ->add_option("--devices", given->devices,
+                   "Devices that participants hold or wear: wiimote or joycon (default wiimote)")
+      ->check(CLI::IsMember({"wiimote", "joycon"}));
   command->callback([given, &shared] { Finish(Simulate(*given), shared); });
 }
 

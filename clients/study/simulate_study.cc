@@ -144,7 +144,8 @@ class Run {
     return StartChild("footing-stream",
                       {"user", "--interface", interface, "--turn-by", simulated_.turn_by, "--see",
                        Socket("simulation"), "--to", Socket("devices"), "--style-seed", Seed(user),
-                       "--seed", Seed(user + " " + interface)});
+                       "--seed", Seed(user + " " + interface), "--devices",
+                       interface == "boards" ? "wiimote" : simulated_.devices});
   }
 
   /// Reads the events that the journal has gained since the last call.
@@ -304,8 +305,8 @@ Result<void> SimulateOne(const StudyOptions& options, const plan::SessionPlan& s
   const std::string draft = options.study_folder + "/.drafts/" + session.participant;
   std::error_code error;
   fs::remove_all(draft, error);
-  const auto done = Simulate(
-      {options.protocol_path, draft, session, options.seed, options.real_time, options.turn_by});
+  const auto done = Simulate({options.protocol_path, draft, session, options.seed,
+                              options.real_time, options.turn_by, options.devices});
   if (!done) return done;
   fs::rename(journal::ParticipantFolder(draft, session.participant),
              journal::ParticipantFolder(options.study_folder, session.participant), error);

@@ -20,9 +20,10 @@ struct SimulatedSession {
   std::string protocol_path;
   std::string study_folder;  ///< Folder of this session alone; must not exist.
   plan::SessionPlan session;
-  std::uint64_t seed = 1;        ///< Seed of the participant's style and answers.
-  bool real_time = false;        ///< Runs on the host's time, so that latencies are real.
-  std::string turn_by = "head";  ///< Turn source of the interface leg: head, feet or trunk.
+  std::uint64_t seed = 1;           ///< Seed of the participant's style and answers.
+  bool real_time = false;           ///< Runs on the host's time, so that latencies are real.
+  std::string turn_by = "head";     ///< Turn source of the interface leg: head, feet or trunk.
+  std::string devices = "wiimote";  ///< Held or worn: wiimote or joycon. Boards stay boards.
 };
 
 /// Runs footingd, footing-sim, footing-stream and `footing-study run --unattended` as processes of
@@ -81,9 +82,10 @@ struct StudyOptions {
   std::string study_folder;  ///< Folder of simulated sessions alone.
   std::vector<plan::SessionPlan> sessions;
   std::uint64_t seed = 1;
-  int jobs = 1;                  ///< Sessions at once, each on about one processor.
-  bool real_time = false;        ///< As in SimulatedSession.
-  std::string turn_by = "head";  ///< As in SimulatedSession.
+  int jobs = 1;                     ///< Sessions at once, each on about one processor.
+  bool real_time = false;           ///< As in SimulatedSession.
+  std::string turn_by = "head";     ///< As in SimulatedSession.
+  std::string devices = "wiimote";  ///< As in SimulatedSession.
 };
 
 /// One participant's session in the folder.
