@@ -87,10 +87,12 @@ int main(int argc, char** argv) {
   app->add_option_function<std::vector<std::string>>(
       "--gains", footing::eval::ReadGainsToo,
       "Gait tables, CSV; may be repeated. They replace the built-in tables of their gaits");
-  app->add_option_function<std::string>("--gaits", footing::eval::UseGaits,
-                                        "Controllers of the gaits: best, or paper for the state "
-                                        "machines and equations as the gait paper prints them")
-      ->check(CLI::IsMember({"best", "paper"}));
+  app->add_option_function<std::string>(
+         "--gaits", footing::eval::UseGaits,
+         "Controllers of the gaits: best, plain for the same without "
+         "style, or paper for the state "
+         "machines and equations as the gait paper prints them")
+      ->check(CLI::IsMember({"best", "plain", "paper"}));
   app->require_subcommand(1);
   app->fallthrough();
   AddCommands(*app, shared);

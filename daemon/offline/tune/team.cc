@@ -338,7 +338,8 @@ Difference MeanOf(std::size_t count, const Value& value) {
 }  // namespace
 
 Result<Team> Team::Create(int threads, ranks::Ranks ranks, const std::vector<std::string>& gains) {
-  const Result<engine::EngineTexts> texts = engine_files::ReadTexts({.more_gains = gains});
+  const Result<engine::EngineTexts> texts =
+      engine_files::ReadTexts({.gaits = "plain", .more_gains = gains});
   if (!texts) return texts.error();
   Team team;
   team.ranks_ = ranks;

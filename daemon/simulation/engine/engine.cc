@@ -26,6 +26,18 @@ Result<GaitEngine> GaitEngine::Create(const EngineTexts& texts, const EngineConf
   return CreateOn(std::move(track).value(), texts, config);
 }
 
+namespace {
+
+Result<gait::GainTable> TableOf(const std::vector<GainText>& texts) {
+  gait::GainTable table;
+  for (const GainText& gains : texts) {
+    if (const auto added = table.Add(gains.text, gains.origin); !added) return added.error();
+  }
+  return table;
+}
+
+}  // namespace
+
 Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& texts,
                                         const EngineConfig& config) {
   if (!(config.step_s > 0 && config.step_s <= 0.002)) {
@@ -37,16 +49,17 @@ Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& 
   Result<mapping::AnyInterface> interface =
       mapping::AnyInterface::Create(config.interface, texts.mapping);
   if (!interface) return interface.error();
-  gait::GainTable gain_table;
-  for (const GainText& gains : texts.gains) {
-    if (const auto added = gain_table.Add(gains.text, gains.origin); !added) return added.error();
-  }
+  const Result<gait::GainTable> gain_table = TableOf(texts.gains);
+  if (!gain_table) return gain_table.error();
+  const Result<gait::GainTable> style_table = TableOf(texts.style);
+  if (!style_table) return style_table.error();
   Result<std::unique_ptr<TrackWorld>> on = MakeTrackWorld(std::move(track), *biped, config.step_s);
   if (!on) return on.error();
 
   auto parts = std::make_unique<Parts>(Parts{.config = config,
                                              .biped = *biped,
-                                             .gain_table = std::move(gain_table),
+                                             .gain_table = *gain_table,
+                                             .style_table = *style_table,
                                              .gains = {},
                                              .skeleton = biped::DescribeSkeleton(*biped),
                                              .on = std::move(**on),
@@ -125,6 +138,7 @@ const stream::Track& GaitEngine::track() const { return parts_->on.track; }
 
 void GaitEngine::UseGains(const gait::GainTable& table) {
   parts_->gain_table = table;
+  parts_->style_table = {};
   parts_->gains_gait = stream::Gait::kUnspecified;
 }
 

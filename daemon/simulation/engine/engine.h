@@ -33,11 +33,15 @@ struct EngineTexts {
   /// kGainFiles, and more: a later one replaces what an earlier one had for its gaits. None: the
   /// defaults of gains.h.
   std::vector<GainText> gains;
+  std::vector<GainText>
+      style;  ///< kStyleFiles: gains of the same gaits with their style. May be none.
 };
 inline constexpr const char* kBipedFile = "biped.json";
 inline constexpr const char* kPlainTrackFile = "tracks/plain.json";
 inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
                                        "gaits/jump.csv"};
+inline constexpr std::array kStyleFiles{"gaits/style/step.csv", "gaits/style/walk.csv",
+                                        "gaits/style/run.csv"};
 /// After those, the gaits as the gait paper prints them.
 inline constexpr std::array kPaperGainFiles{"gaits/paper/step.csv", "gaits/paper/walk.csv",
                                             "gaits/paper/run.csv", "gaits/paper/jump.csv"};
@@ -208,7 +212,7 @@ class GaitEngine {
   /// have a new number. Allocates nothing.
   void UseTrack(TrackWorld& other);
 
-  /// Other gains from the next step on; not part of the state. Allocates.
+  /// Other gains from the next step on, without style; not part of the state. Allocates.
   void UseGains(const gait::GainTable& table);
 
   /// Everything that changes with time, as a value (state.h); Restore brings an engine on the same

@@ -151,10 +151,14 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
 void GaitEngine::Parts::ChooseGains() {
   const stream::Gait gait = state.gait.transition.thrusting ? stream::Gait::kRun : state.gait.gait;
   const double speed_mps = state.gait.speed.desired_mps;
-  if (gait == gains_gait && speed_mps == gains_speed_mps) return;
+  state.gait.style.there = !style_table.SetsOf(gait).empty();
+  const double style = state.gait.style.there ? state.gait.style.share : 0;
+  if (gait == gains_gait && speed_mps == gains_speed_mps && style == gains_style) return;
   gains = gain_table.At(gait, speed_mps);
+  if (style > 0) gains = gait::Between(gains, style_table.At(gait, speed_mps), style);
   gains_gait = gait;
   gains_speed_mps = speed_mps;
+  gains_style = style;
 }
 
 void GaitEngine::Parts::StepWorld() {

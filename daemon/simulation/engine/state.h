@@ -91,9 +91,11 @@ struct GaitEngine::Parts {
   EngineConfig config;
   biped::BipedParameters biped;
   gait::GainTable gain_table;
-  gait::Gains gains;  ///< Gains for gains_gait at gains_speed_mps.
+  gait::GainTable style_table;  ///< The same with style; a gait without sets has none.
+  gait::Gains gains;            ///< Gains for gains_gait at gains_speed_mps and gains_style.
   stream::Gait gains_gait = stream::Gait::kUnspecified;
   double gains_speed_mps = 0;
+  double gains_style = 0;
   stream::Skeleton skeleton;
   TrackWorld on;                                                 ///< The track with its physics.
   std::array<std::uint64_t, terrain::kGroundBoxes> box_holds{};  ///< Segment's number + 1; 0 none.

@@ -11,6 +11,7 @@
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/paper.h"
 #include "daemon/simulation/gait/running.h"
+#include "daemon/simulation/gait/style.h"
 #include "daemon/simulation/gait/targets.h"
 #include "daemon/simulation/gait/transition.h"
 
@@ -50,6 +51,7 @@ physics::JointEfforts Advance(const biped::BodyState& body, const biped::BipedPa
       {AdvanceWalking, AdvanceRunning, WalkingTargets, RunningTargets}, context, memory);
   targets.lean_rad += AnticipatedLean(context, memory);
   KeepLegsApart(context, memory, targets);
+  FadeStyle(context, memory);
   return Servo(targets, body, biped, gains, step_s, memory);
 }
 
@@ -478,9 +480,12 @@ Targets AdvanceWalking(const Context& context, GaitMemory& memory) {
   const WalkingPhase next = Next(memory.walking, SenseWalking(context, memory));
   if (next != memory.walking) Enter(next, context, memory);
   FollowGround(context, memory);
-  if (memory.walking == WalkingPhase::kDoubleSupport) return WalkingTargets(context, memory);
-
   const WalkingFoothold foothold = PlanWalkingFoothold(context, memory);
+  memory.style.excess_m = foothold.excess_m;
+  if (memory.walking == WalkingPhase::kDoubleSupport) {
+    memory.phase_start_s -= context.gains.style.foresight * foothold.hurry * context.step_s;
+    return WalkingTargets(context, memory);
+  }
   memory.foothold_W_m = foothold.p_WF_m;
   memory.walking_step.strides_to_pit = foothold.strides_to_pit;
   const bool swinging = context.TimeIn(memory) < SwingTime(context, memory);
@@ -510,7 +515,8 @@ double SupportLength(const Context& context, const GaitMemory& memory, int leg) 
   const WalkingGains& gains = context.gains.walking;
   const biped::LegState& state = context.body.legs[leg];
   const double height_m = gains.hip_height_m - AnticipatedCrouch(context, memory) +
-                          memory.walking_step.support_height_m - state.p_WF.z();
+                          HipRise(context, memory) + memory.walking_step.support_height_m -
+                          state.p_WF.z();
   return std::clamp(height_m / std::max(0.5, -state.u_HF_W.z()), gains.leg_length_min_m,
                     gains.leg_length_max_m);
 }
@@ -552,6 +558,7 @@ Targets DoubleSupport(const Context& context, const GaitMemory& memory) {
   if (context.body.legs[rear].touching) {
     targets.legs[rear] = Supporting(context, memory, rear, 1 - passed);
   }
+  AddStyle(context, memory, targets);
   return targets;
 }
 
@@ -607,6 +614,7 @@ Targets WalkingTargets(const Context& context, const GaitMemory& memory) {
   Vector3d& r_HF_W = targets.legs[swing_leg].r_HF_W_m;
   r_HF_W = SwingFoot(context, memory, swing_leg) - swinging.p_WH;
   if (memory.walking_step.strides_to_pit) r_HF_W = AtHeight(r_HF_W, swinging);
+  AddStyle(context, memory, targets);
   return targets;
 }
 

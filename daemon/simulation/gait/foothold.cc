@@ -46,7 +46,7 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const WalkingGains& gains = context.gains.walking;
   const double side = -biped::Side(memory.support_leg);  // Side of the swing leg.
   const auto [rate, capture_H] = SupportPendulum(context, memory);
-  const double step_time_s = SwingTime(context, memory) + gains.double_support_time_s;
+  const double step_time_s = StepTime(context, memory);
   const double growth = std::exp(rate * step_time_s);
 
   const double back_m = memory.speed.desired_mps * step_time_s / (growth - 1);
@@ -57,10 +57,15 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const double outward_m = side * (capture_H.y() + offset_H.y());
 
   WalkingFoothold foothold;
-  const double excess_m = std::max(0.0, std::fabs(capture_H.x() - back_m) - gains.hurry_beyond_m) +
-                          std::max(0.0, kSidewaysNearM - outward_m) +
-                          std::max(0.0, outward_m - kSidewaysWideM);
-  foothold.hurry = std::min(gains.hurry_rate, kHurryPerMetre * excess_m);
+  // The capture point moves away from the foot until touchdown.
+  const double foreseen_s =
+      context.gains.style.foresight * step_time_s * (1 - StepPhase(context, memory));
+  const Vector3d landing_H = std::exp(rate * foreseen_s) * capture_H;
+  const double landing_outward_m = side * (landing_H.y() + offset_H.y());
+  foothold.excess_m = std::max(0.0, std::fabs(landing_H.x() - back_m) - gains.hurry_beyond_m) +
+                      std::max(0.0, kSidewaysNearM - landing_outward_m) +
+                      std::max(0.0, landing_outward_m - kSidewaysWideM);
+  foothold.hurry = std::min(gains.hurry_rate, kHurryPerMetre * foothold.excess_m);
 
   const double y_m = side * std::clamp(SideStep(outward_m, context.gains.curve.leg_gap_m),
                                        -gains.feet_cross_m, gains.side_step_limit_m);
@@ -317,12 +322,25 @@ double SwingTime(const Context& context, const GaitMemory& memory) {
                                               : context.gains.walking.swing_time_s;
 }
 
+double StepTime(const Context& context, const GaitMemory& memory) {
+  return SwingTime(context, memory) + context.gains.walking.double_support_time_s;
+}
+
+double StepPhase(const Context& context, const GaitMemory& memory) {
+  const double double_support_s = context.gains.walking.double_support_time_s;
+  const double time_s = memory.walking == WalkingPhase::kDoubleSupport
+                            ? std::min(context.TimeIn(memory), double_support_s)
+                            : double_support_s + context.TimeIn(memory);
+  return std::clamp(time_s / StepTime(context, memory), 0.0, 1.0);
+}
+
 double CommandedSwingTime(const Context& context) {
   const WalkingGains& walking = context.gains.walking;
   const CadenceGains& limits = context.gains.cadence;
   if (!(context.goal.cadence_hz > 0)) return walking.swing_time_s;
   return std::clamp(1 / context.goal.cadence_hz - walking.double_support_time_s,
-                    limits.swing_time_min_s, limits.swing_time_max_s);
+                    limits.swing_time_min_s,
+                    std::max(limits.swing_time_max_s, walking.swing_time_s));
 }
 
 double RunLiftOffSpeed(const Context& context, const GaitMemory& memory) {

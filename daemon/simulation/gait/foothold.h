@@ -22,7 +22,8 @@ namespace footing::gait {
 /// Planned foothold of the swing leg, W.
 struct WalkingFoothold {
   Eigen::Vector3d p_WF_m = Eigen::Vector3d::Zero();
-  double hurry = 0;                   ///< [0, 1): fraction by which the swing clock should gain.
+  double hurry = 0;     ///< Fraction by which the swing clock should gain.
+  double excess_m = 0;  ///< How far the foothold that balance wants is outside its box.
   std::optional<int> strides_to_pit;  ///< As in WalkingStep.
 };
 
@@ -78,7 +79,11 @@ double AnticipatedCrouch(const Context& context, const GaitMemory& memory);
 
 /// Rise and Fall of the present step, s. Equation (1) follows it, so the speed stays.
 double SwingTime(const Context& context, const GaitMemory& memory);
-/// The same for the step that begins, by the command.
+/// The same and Double Support: from touchdown to touchdown.
+double StepTime(const Context& context, const GaitMemory& memory);
+/// Part of a walking step that is over: 0 at touchdown, 1 at the next one.
+double StepPhase(const Context& context, const GaitMemory& memory);
+/// Rise and Fall of the step that begins, by the command, s.
 double CommandedSwingTime(const Context& context);
 /// Vertical speed of a run's lift-off, m/s: flight takes the step's time less the support's.
 double RunLiftOffSpeed(const Context& context, const GaitMemory& memory);

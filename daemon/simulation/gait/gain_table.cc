@@ -131,14 +131,18 @@ Gains Interpolated(const std::vector<GainSet>& sets, double speed_mps) {
   if (faster == sets.end()) return sets.back().gains;
   const GainSet& slower = *std::prev(faster);
   const double share = (speed_mps - slower.speed_mps) / (faster->speed_mps - slower.speed_mps);
-  Gains gains = slower.gains;
-  for (const GainField& field : GainFields()) {
-    field.of(gains) = std::lerp(field.Of(slower.gains), field.Of(faster->gains), share);
-  }
-  return gains;
+  return Between(slower.gains, faster->gains, share);
 }
 
 }  // namespace
+
+Gains Between(const Gains& a, const Gains& b, double share) {
+  Gains gains = a;
+  for (const GainField& field : GainFields()) {
+    field.of(gains) = std::lerp(field.Of(a), field.Of(b), share);
+  }
+  return gains;
+}
 
 Result<void> GainTable::Add(std::string_view text, const std::string& origin) {
   GainSets read;

@@ -23,6 +23,9 @@ struct GainSet {
 /// The sets of each gait, in the order of stream::kGaits.
 using GainSets = std::array<std::vector<GainSet>, stream::kGaits.size()>;
 
+/// The gains between `a` (share 0) and `b` (share 1).
+Gains Between(const Gains& a, const Gains& b, double share);
+
 /// The sets of every gait. A gait without any has the defaults of gains.h.
 class GainTable {
  public:

@@ -174,7 +174,7 @@ struct RecoveryGains {
 /// How far a command's cadence is followed.
 struct CadenceGains {
   double swing_time_min_s = 0.28;  ///< 3.0 steps a second.
-  double swing_time_max_s = 0.40;  ///< 2.2.
+  double swing_time_max_s = 0.40;  ///< 2.2, or as slow as the gait's own steps.
   double run_lift_off_min_mps = 1.0;
   double run_lift_off_max_mps = 1.7;
 };
@@ -184,6 +184,35 @@ struct AnticipationGains {
   double lean_rad_per_mps = 0.05;  ///< Per speed still to be gained.
   double lean_limit_rad = 0.08;
   double crouch_m = 0.03;
+};
+
+/// Style of walking and stepping: set-points within a step, of the servos that run anyway (docs/
+/// gait.md, "Style"). The phase within the step is 0 at touchdown and 1 at the next one. All are 0
+/// without style.
+struct StyleGains {
+  double foresight = 0;         ///< Part of the time to touchdown for which hurry looks ahead.
+  double bob_share = 0;         ///< Rise and fall of the hips, as part of a rigid leg's arc.
+  double pelvis_roll_rad = 0;   ///< The swing leg's hip goes down by this roll, ...
+  double pelvis_roll_lead = 0;  ///< ... this part of a step before the middle of the step.
+  double pelvis_yaw_rad = 0;    ///< The landing leg's hip goes ahead by this yaw, at touchdown.
+  double nod_rad = 0;           ///< Pitch forward at touchdown, back between.
+  double turn_bank_share = 0;   ///< Bank in a walked curve, as bank_share is in a run's.
+  double lean_rad_per_mps = 0;  ///< Pitch forward by v_d; in runs too.
+};
+
+/// Where the style fades, because balance comes first (style.h).
+struct FadeGains {
+  double out_s = 0.12;           ///< From all of the style to none of it.
+  double in_s = 2;               ///< And back.
+  double level_m = 0.03;         ///< None where the ground rises or falls by this ...
+  double sight_m = 0.5;          ///< ... within this, behind and ahead, ...
+  double sight_s = 1;            ///< ... and as much further ahead as the speed leads in this.
+  double turn_from_rad = 0.035;  ///< Turn of a step up to which there is all of it, ...
+  double turn_to_rad = 0.07;     ///< ... and from which on there is none.
+  double excess_m = 0.02;        ///< Walking: how far outside its box the foothold is, ...
+  double speed_error_mps = 0.5;  ///< ... running: error of the speed ahead in flight, ...
+  double aside_mps = 0.35;       ///< ... and the speed aside, at which there is none.
+  double tilt_rad = 0.15;        ///< None beyond this tilt of the body.
 };
 
 /// The gaits as the paper prints them (paper.h). Nothing here acts while `laws` is 0.
@@ -231,6 +260,8 @@ struct Gains {
   RecoveryGains recovery;
   CadenceGains cadence;
   AnticipationGains anticipation;
+  StyleGains style;
+  FadeGains fade;
   PaperGains paper;
   PaperHopGains paper_hop;
 };

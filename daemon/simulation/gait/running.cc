@@ -461,6 +461,9 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
   targets.hopping = true;
   const bool leaps = memory.pit.leaping &&
                      (memory.transition.preparing_jump || memory.pit.lift_off_mps > kLongFlightMps);
+  if (!jumping) {
+    targets.lean_rad = context.gains.style.lean_rad_per_mps * memory.speed.desired_mps;
+  }
   if (leaps && !flying && !jumping) {
     PrepareLongFlight(context, memory, targets);
   } else if (!flying) {

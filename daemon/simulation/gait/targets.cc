@@ -31,9 +31,9 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
       targets.lean_rad +
       (targets.jumping ? gains.jump_lean_rad_per_mps * memory.speed.desired_mps : 0);
   const bool running = targets.hopping && !targets.jumping;
-  const double bank_rad = running ? BankAngle(memory, gains) : 0;
+  const double bank_rad = running ? BankAngle(memory, gains) : targets.roll_rad;
   const Eigen::Matrix3d desired_R_WB =
-      (Eigen::AngleAxisd(memory.heading_rad, Eigen::Vector3d::UnitZ()) *
+      (Eigen::AngleAxisd(memory.heading_rad + targets.yaw_rad, Eigen::Vector3d::UnitZ()) *
        Eigen::AngleAxisd(bank_rad, Eigen::Vector3d::UnitX()) *
        Eigen::AngleAxisd(lean_rad, Eigen::Vector3d::UnitY()))
           .toRotationMatrix();

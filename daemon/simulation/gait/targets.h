@@ -50,6 +50,8 @@ struct Targets {
   bool jumping = false;  ///< Both legs as one virtual leg; lean by speed.
   double flight_s = 0;   ///< That follows: a tilt is to be gone by its end, not sooner.
   double lean_rad = 0;   ///< Desired pitch besides.
+  double roll_rad = 0;   ///< Desired roll of a walk, to the left negative, ...
+  double yaw_rad = 0;    ///< ... and its yaw off the heading.
   Eigen::Vector3d rate_W_radps = Eigen::Vector3d::Zero();  ///< Desired of the body.
 };
 
@@ -170,6 +172,14 @@ struct GroundMemory {
   EdgeMemory behind, ahead;  ///< Edges about the foothold.
 };
 
+/// The style's part in the present gains (style.h).
+struct StyleMemory {
+  bool there = false;                              ///< The gait has a style.
+  double share = 0;                                ///< [0, 1].
+  double excess_m = 0;                             ///< Walking: as in WalkingFoothold.
+  stream::Gait gait = stream::Gait::kUnspecified;  ///< That `share` is for.
+};
+
 /// All that the controllers remember between steps: a plain value.
 struct GaitMemory {
   stream::Gait gait = stream::Gait::kStep;
@@ -191,6 +201,7 @@ struct GaitMemory {
   HopSupport hop;
   PitMemory pit;
   GroundMemory ground;
+  StyleMemory style;
   ServoMemory servo;
 };
 

@@ -79,6 +79,9 @@ EffectiveConfig::EffectiveConfig(const serving::Config& common, const Config& co
   for (const engine::GainText& gains : texts.gains) {
     json_["sha256"][gains.origin] = HashOf(gains.text);
   }
+  for (const engine::GainText& gains : texts.style) {
+    json_["sha256"][gains.origin] = HashOf(gains.text);
+  }
   SetInterface(0, engine.interface, texts.mapping,
                config.mapping_table.empty() ? kBuiltInTable : config.mapping_table);
 }
@@ -124,8 +127,8 @@ std::string GaitsIn(const v1::EffectiveConfig& message) {
 namespace footing::engine_files {
 
 Result<void> CheckGaits(const std::string& gaits) {
-  if (gaits == "best" || gaits == "paper") return {};
-  return UsageError("unknown --gaits " + gaits + "; there are: best, paper");
+  if (gaits == "best" || gaits == "plain" || gaits == "paper") return {};
+  return UsageError("unknown --gaits " + gaits + "; there are: best, plain, paper");
 }
 
 Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
@@ -166,6 +169,13 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
     auto gains = config::ReadTextFile(path);
     if (!gains) return gains.error();
     texts.gains.push_back({path, std::move(*gains)});
+  }
+  const bool styled = wish.gaits == "best" && wish.more_gains.empty();
+  for (const char* name : engine::kStyleFiles) {
+    if (!styled) break;
+    auto gains = config::ReadDataFile(name, wish.data_folder);
+    if (!gains) return gains.error();
+    texts.style.push_back({name, std::move(*gains)});
   }
   return texts;
 }

@@ -11,7 +11,8 @@ inline EngineTexts Texts() {
   EngineTexts texts{.biped = test::DataFile(kBipedFile),
                     .track = test::DataFile(kPlainTrackFile),
                     .mapping = test::DataFile(mapping::kWristMappingFile),
-                    .gains = {}};
+                    .gains = {},
+                    .style = {}};
   for (const char* name : kGainFiles) texts.gains.push_back({name, test::DataFile(name)});
   return texts;
 }

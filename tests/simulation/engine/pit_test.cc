@@ -7,11 +7,17 @@ using stream::Gait;
 
 constexpr double kNearM = 17;
 
+constexpr double kPitSightM = 7;  ///< The controllers see a pit from 8 m, once a step.
+
+std::string TrackWithPit(double width_m, bool helps = true) {
+  return std::string(R"({"version": 1, "help_over_pits": )") + (helps ? "true" : "false") +
+         R"(, "segments": [{"length_m": )" + std::to_string(kNearM) + R"(}, {"length_m": )" +
+         std::to_string(width_m) + R"(, "pit": true}, {"length_m": 100}]})";
+}
+
 GaitEngine NewEngineBeforeAPit(double width_m, bool helps = true) {
   EngineTexts texts = Texts();
-  texts.track = std::string(R"({"version": 1, "help_over_pits": )") + (helps ? "true" : "false") +
-                R"(, "segments": [{"length_m": )" + std::to_string(kNearM) + R"(}, {"length_m": )" +
-                std::to_string(width_m) + R"(, "pit": true}, {"length_m": 100}]})";
+  texts.track = TrackWithPit(width_m, helps);
   return std::move(GaitEngine::Create(texts)).value();
 }
 
@@ -54,6 +60,31 @@ TEST(Pit, IsSteppedOverByAWalkAtAnySpeed) {
     EXPECT_EQ(engine.Output().gait.falls, 0u) << speed_mps;
     EXPECT_GT(engine.Output().p_WC_m.x(), kNearM + 1) << speed_mps;
   }
+}
+
+TEST(Pit, IsMetByAWalkWithoutItsStyle) {
+  EngineTexts texts = Texts();
+  texts.track = TrackWithPit(0.3);
+  for (const char* name : kStyleFiles) texts.style.push_back({name, test::DataFile(name)});
+  GaitEngine styled = std::move(GaitEngine::Create(texts)).value();
+  texts.style.clear();
+  GaitEngine plain = std::move(GaitEngine::Create(texts)).value();
+  const EngineInputs walk = Direct(Command(Gait::kWalk, 1.2));
+  // Until the pit is in sight, and from there on.
+  const auto steps = [&walk](GaitEngine& engine) {
+    std::array<std::uint64_t, 2> counted{};
+    Simulate(engine, walk, 17, [&counted](const EngineOutput& output) {
+      const double to_edge_m = kNearM - output.p_WC_m.x();
+      if (to_edge_m > kPitSightM) counted[0] = output.gait.steps;
+      if (to_edge_m > 1) counted[1] = output.gait.steps;
+    });
+    EXPECT_EQ(engine.Output().gait.falls, 0u);
+    EXPECT_GT(engine.Output().p_WC_m.x(), kNearM + 1);
+    return std::array{counted[0], counted[1] - counted[0]};
+  };
+  const auto with = steps(styled), without = steps(plain);
+  EXPECT_LT(with[0] + 4, without[0]);  // 2.0 and 2.7 steps a second.
+  EXPECT_LE(std::max(with[1], without[1]) - std::min(with[1], without[1]), 1u);
 }
 
 TEST(Pit, WideStopsAWalkBeforeIt) {

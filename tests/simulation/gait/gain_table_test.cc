@@ -2,6 +2,7 @@
 #include <fstream>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -150,7 +151,9 @@ TEST(GainTable, NamesFileLineAndFaultOfWhatItCannotRead) {
 
 TEST(ShippedGains, SayOnlyWhatDiffersFromTheHeader) {
   // One place for each number: a table that repeated a default would hide a change of gains.h.
-  for (const char* name : engine::kGainFiles) {
+  std::vector<const char*> names(engine::kGainFiles.begin(), engine::kGainFiles.end());
+  names.insert(names.end(), engine::kStyleFiles.begin(), engine::kStyleFiles.end());
+  for (const char* name : names) {
     GainTable table;
     const std::string text = test::DataFile(name);
     ASSERT_TRUE(table.Add(text, name).ok());
@@ -174,6 +177,14 @@ TEST(PrototypeGains, AreStillATableToCompareWith) {
   const auto text = config::ReadTextFile(FOOTING_SOURCE_DIR "/tests/simulation/gait/prototype.csv");
   ASSERT_TRUE(text.ok());
   EXPECT_EQ(Read(*text).At(Gait::kRun, 5).hopping.run_velocity_gain_s, 0.06);
+}
+
+TEST(Between, IsTheOneAndTheOtherAtItsEnds) {
+  Gains a, b;
+  b.walking.swing_time_s = 0.6;
+  EXPECT_EQ(Between(a, b, 0).walking.swing_time_s, a.walking.swing_time_s);
+  EXPECT_EQ(Between(a, b, 1).walking.swing_time_s, 0.6);
+  EXPECT_DOUBLE_EQ(Between(a, b, 0.25).walking.swing_time_s, 0.75 * 0.32 + 0.25 * 0.6);
 }
 
 TEST(ShippedGains, HaveSetsForEveryGait) {

@@ -6,6 +6,7 @@
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/paper.h"
 #include "daemon/simulation/gait/running.h"
+#include "daemon/simulation/gait/style.h"
 #include "daemon/simulation/gait/targets.h"
 #include "tests/simulation/test_world.h"
 
@@ -72,6 +73,108 @@ TEST(Equation1, AStepThatWouldCrossTooFarHurries) {
   EXPECT_EQ(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
   scene.body.v_WC.y() = 0.9;  // Over the left, supporting foot: the right one must cross.
   EXPECT_GT(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
+}
+
+/// A walk of 1.2 m/s on its left leg at a part of the step, by our laws with a style.
+struct StyledStep {
+  LawsScene scene;
+
+  explicit StyledStep(double phase) {
+    scene.gains.style = {.bob_share = 0.8,
+                         .pelvis_roll_rad = 0.08,
+                         .pelvis_yaw_rad = 0.06,
+                         .nod_rad = 0.02,
+                         .lean_rad_per_mps = 0.01};
+    scene.memory.speed.desired_mps = 1.2;
+    scene.memory.walking = phase > 0 ? WalkingPhase::kRise : WalkingPhase::kDoubleSupport;
+    scene.memory.support_leg = biped::kLeft;
+    const double double_support_s = scene.gains.walking.double_support_time_s;
+    const double step_s = scene.gains.walking.swing_time_s + double_support_s;
+    scene.body.time_s = std::max(0.0, phase * step_s - double_support_s);
+    for (auto& leg : scene.body.legs) leg.touching = true;
+  }
+  Targets targets() const { return WalkingTargets(scene.context(), scene.memory); }
+};
+
+TEST(Style, SwingsThePelvisWithTheLegsOfAWalk) {
+  const Targets touchdown = StyledStep(0).targets(), middle = StyledStep(0.5).targets();
+  // The landing left leg's hip is ahead: the body is turned to the right, and turns to the left.
+  EXPECT_NEAR(touchdown.yaw_rad, -0.06, 1e-12);
+  EXPECT_NEAR(middle.yaw_rad, 0, 1e-12);
+  EXPECT_GT(middle.rate_W_radps.z(), 0);
+  // In the middle of its support the left hip is up, which is a roll to the right.
+  EXPECT_NEAR(touchdown.roll_rad, 0, 1e-12);
+  EXPECT_NEAR(middle.roll_rad, 0.08, 1e-12);
+  EXPECT_GT(touchdown.rate_W_radps.x(), 0);
+  // Forward at touchdown, besides the lean by 0.01 rad for each m/s.
+  EXPECT_NEAR(touchdown.lean_rad, 0.012 + 0.02, 1e-12);
+  EXPECT_NEAR(middle.lean_rad, 0.012 - 0.02, 1e-12);
+}
+
+TEST(Style, RaisesTheHipsOverTheSupportingLegByAPartOfARigidLegsArc) {
+  const StyledStep touchdown(0), middle(0.5);
+  const WalkingGains& gains = touchdown.scene.gains.walking;
+  const double step_m = 1.2 * (gains.swing_time_s + gains.double_support_time_s);
+  EXPECT_NEAR(middle.targets().legs[biped::kLeft].axial.length_m -
+                  touchdown.targets().legs[biped::kLeft].axial.length_m,
+              0.8 * step_m * step_m / (8 * gains.hip_height_m), 1e-12);
+}
+
+/// A walk with all of its style, as nothing disturbs it.
+struct StyledWalk : LawsScene {
+  StyledWalk() {
+    goal.gait = memory.gait = memory.style.gait = stream::Gait::kWalk;
+    body.R_WB.setIdentity();
+    gains.walking.swing_time_s = 0.32;
+    memory.walking = WalkingPhase::kRise;
+    memory.walking_step.swing_time_s = 0.6;
+    memory.style.there = true;
+    memory.style.share = 1;
+  }
+};
+
+TEST(Style, FadesWhereBalanceComesFirst) {
+  StyledWalk scene;
+  EXPECT_EQ(RegularShare(scene.context(), scene.memory), 1);
+  const auto share = [](const auto& change) {
+    StyledWalk changed;
+    change(changed);
+    return RegularShare(changed.context(), changed.memory);
+  };
+  EXPECT_EQ(share([](auto& s) { s.memory.pit.sighting.ahead = true; }), 0);
+  EXPECT_EQ(share([](auto& s) { s.goal.gait = stream::Gait::kRun; }), 0);
+  EXPECT_EQ(share([](auto& s) { s.memory.style.excess_m = 0.1; }), 0);
+  EXPECT_EQ(share([](auto& s) {
+              s.body.R_WB = Eigen::AngleAxisd(0.2, Vector3d::UnitX()).toRotationMatrix();
+            }),
+            0);
+  const FadeGains& gains = scene.gains.fade;
+  EXPECT_NEAR(share([&gains](auto& s) {
+                s.goal.turn_per_step_rad = -(gains.turn_from_rad + gains.turn_to_rad) / 2;
+              }),
+              0.5, 1e-12);
+}
+
+TEST(Style, ShortensTheStepAsItFadesAndKeepsWhatIsOverOfIt) {
+  StyledWalk scene;
+  scene.body.time_s = 0.3;  // Half of the slow swing.
+  scene.memory.pit.sighting.ahead = true;
+  FadeStyle(scene.context(), scene.memory);
+  EXPECT_NEAR(scene.memory.style.share, 1 - 0.001 / scene.gains.fade.out_s, 1e-12);
+  EXPECT_EQ(SwingTime(scene.context(), scene.memory), 0.32);
+  EXPECT_NEAR(scene.context().TimeIn(scene.memory), 0.16, 1e-12);
+  for (int i = 0; i < 1000; ++i) FadeStyle(scene.context(), scene.memory);
+  EXPECT_EQ(scene.memory.style.share, 0);
+}
+
+TEST(Style, IsAbsentFromTheDefaultsThatThePapersGaitsHave) {
+  LawsScene scene;
+  scene.memory.speed.desired_mps = 1.2;
+  const Targets targets = WalkingTargets(scene.context(), scene.memory);
+  EXPECT_EQ(targets.roll_rad, 0);
+  EXPECT_EQ(targets.yaw_rad, 0);
+  EXPECT_EQ(targets.lean_rad, 0);
+  EXPECT_EQ(targets.rate_W_radps, Vector3d::Zero());
 }
 
 TEST(PaperEquations, AreAnglesAsPrinted) {

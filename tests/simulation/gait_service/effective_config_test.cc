@@ -22,6 +22,9 @@ TEST(EffectiveConfig, HasVersionSettingsGainsAndTheTableWithItsValues) {
   for (const char* name : engine::kGainFiles) {
     EXPECT_EQ(shown["sha256"][name].get<std::string>().size(), 64u) << name;
   }
+  for (const char* name : engine::kStyleFiles) {
+    EXPECT_EQ(shown["sha256"][name].get<std::string>().size(), 64u) << name;
+  }
   EXPECT_EQ(shown["interface"]["name"], "wrist");
   EXPECT_EQ(shown["interface"]["table_by"], kBuiltInTable);
   EXPECT_EQ(shown["interface"]["table"], json::parse(texts.mapping));
@@ -30,6 +33,7 @@ TEST(EffectiveConfig, HasVersionSettingsGainsAndTheTableWithItsValues) {
 TEST(EffectiveConfig, NamesThePapersGaitsForAReplay) {
   const auto texts = *engine_files::ReadTexts({.gaits = "paper"});
   ASSERT_EQ(texts.gains.back().origin, engine::kPaperGainFiles.back());
+  EXPECT_TRUE(texts.style.empty());
   Config config;
   EXPECT_EQ(GaitsIn(EffectiveConfig({}, config, texts, {}).Message()), "best");
   config.gaits = "paper";
@@ -45,7 +49,7 @@ TEST(EffectiveConfig, NamesThePapersGaitsForAReplay) {
     EXPECT_EQ(GaitsIn(config_of_a_file), "best") << torn;
   }
   config.gaits = "papers";
-  EXPECT_NE(Check(config).error().message.find("best, paper"), std::string::npos);
+  EXPECT_NE(Check(config).error().message.find("best, plain, paper"), std::string::npos);
   EXPECT_FALSE(engine_files::ReadTexts({.gaits = "papers"}).ok());
 }
 
