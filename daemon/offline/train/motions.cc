@@ -73,6 +73,24 @@ Result<std::string> SkeletonBeside(const fs::path& path) {
   return found->string();
 }
 
+bool HasMarkers(const fs::path& path) {
+  return path.extension() == ".trc" || path.extension() == ".c3d";
+}
+
+bool IsStill(const fs::path& path) {
+  const std::string name = path.stem().string();
+  return name.size() > 6 && name.ends_with("_still");
+}
+
+/// SUBJECT_still.trc or .c3d in the folder of a marker file; empty where there is none.
+std::string StillBeside(const fs::path& path) {
+  for (const char* ending : {".trc", ".c3d"}) {
+    const fs::path still = path.parent_path() / (SubjectOf(path) + "_still" + ending);
+    if (std::error_code error; fs::exists(still, error)) return still.string();
+  }
+  return "";
+}
+
 /// Clips of another layout than the standard are fitted to it when there are several layouts.
 Result<void> UnifyLayouts(std::vector<Clip>& clips) {
   const auto of_first = [&clips](const Clip& clip) {
@@ -98,6 +116,7 @@ Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
     if (!beside) return beside.error();
     load.skeleton = *beside;
   }
+  if (HasMarkers(path)) load.still = StillBeside(path);
   const Result<motion_files::LoadedMotion> read = motion_files::LoadMotion(file, load);
   if (!read) return read.error();
   if (!read->height_m && !read->note.empty()) log::Info(file + ": " + read->note);
@@ -160,7 +179,8 @@ std::string Listed(const std::set<std::string>& subjects) {
 
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {
   command.add_option("--motions", options.folders,
-                     "Folder of motion files, *.bvh, or *.amc with their *.asf; may be repeated");
+                     "Folder of motion files: *.bvh, *.amc with their *.asf, *.trc or *.c3d with a "
+                     "SUBJECT_still.trc or .c3d; may be repeated");
   command.add_option("--exclude", options.exclude,
                      "Subject to leave out of training, so that the model may be evaluated on it; "
                      "may be repeated");
@@ -172,10 +192,11 @@ Result<Clips> ReadClips(const MotionOptions& options) {
   Clips clips;
   std::set<std::string> subjects, left_out;
   for (const std::string& folder : options.folders) {
-    for (const char* ending : {".amc", ".bvh"}) {
+    for (const char* ending : {".amc", ".bvh", ".trc", ".c3d"}) {
       const Result<std::vector<fs::path>> files = FilesOf(folder, ending);
       if (!files) return files.error();
       for (const fs::path& path : *files) {
+        if (IsStill(path)) continue;
         Result<Clip> clip = ReadClip(path.string());
         if (!clip) return clip.error();
         const bool out = exclude.count(clip->subject) != 0;
@@ -192,7 +213,7 @@ Result<Clips> ReadClips(const MotionOptions& options) {
     }
   }
   if (clips.train.empty() && !options.folders.empty()) {
-    return InvalidData("no *.amc or *.bvh to train on in the folders named");
+    return InvalidData("no *.amc, *.bvh, *.trc or *.c3d to train on in the folders named");
   }
   clips.subjects = {subjects.begin(), subjects.end()};
   if (const auto unified = UnifyLayouts(clips.train); !unified) return unified.error();

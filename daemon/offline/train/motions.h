@@ -51,9 +51,11 @@ Result<double> FitToStandardLayout(Clip& clip);
 /// "1, 13, HDM_bd", for an error.
 std::string Listed(const std::set<std::string>& subjects);
 
-/// Every *.bvh and *.amc of the folders, by name. An AMC file's skeleton is SUBJECT.asf beside it,
-/// or else the first SUBJECT_*.asf. Where layouts differ, those to train on are fitted to the
-/// standard one. An error names the file; folders without a file to train on are one too.
+/// Every *.bvh, *.amc, *.trc and *.c3d of the folders, by name. An AMC file's skeleton is
+/// SUBJECT.asf beside it, or else the first SUBJECT_*.asf; who stands still in SUBJECT_still.trc or
+/// .c3d is the person of the marker files of that subject. Where layouts differ, those to train on
+/// are fitted to the standard one. An error names the file; folders without a file to train on are
+/// one too.
 Result<Clips> ReadClips(const MotionOptions& options);
 
 /// The data files of a model: those of the training.

@@ -5,6 +5,7 @@ Usage: train_command_test.py FOOTING_TRAIN
 import hashlib
 import json
 import math
+import os
 import pathlib
 import random
 import subprocess
@@ -201,6 +202,29 @@ class Train(unittest.TestCase):
         report = json.loads(result.stdout)
         self.assertEqual(report["subjects"], ["1", "2", "3"])
         self.assertEqual(report["dof"], 56)
+
+    def test_markers_are_the_person_who_stands_still_beside_them(self):
+        data = os.environ.get("FOOTING_TEST_DATA")
+        recorded = pathlib.Path(data or "/nonexistent", "forces/vua_stoop")
+        if not recorded.is_dir():
+            self.skipTest("FOOTING_TEST_DATA has no forces/vua_stoop")
+        folder = self.folder / "markers"
+        folder.mkdir()
+        stoop, = recorded.glob("stoop1_*.c3d")
+        neutral, = recorded.glob("neu_*.c3d")
+        (folder / "vua_stoop1.c3d").write_bytes(stoop.read_bytes())
+        means = []
+        for still in (False, True):
+            if still:
+                (folder / "vua_still.c3d").write_bytes(neutral.read_bytes())
+            result = run("basis", "--motions", folder, "--out", self.out, "--force", "--json")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(json.loads(result.stdout)["subjects"], ["vua"])
+            written = self.out.read_bytes()
+            self.assertIn(b"vua_stoop1.c3d", written)
+            self.assertNotIn(b"vua_still.c3d", written)
+            means.append(written)
+        self.assertNotEqual(*means)
 
     def test_bad_motions_are_refused_by_name(self):
         folder = self.motions()
