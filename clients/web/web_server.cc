@@ -105,14 +105,17 @@ namespace {
 using Desk = WebServer::Desk;
 
 /// A phone's message, checked: it attaches an inertial sensor and sends its reports, and nothing
-/// else.
-Result<void> CheckDevice(std::string_view message) {
+/// else. The first one of a connection must attach.
+Result<void> CheckDevice(std::string_view message, bool first) {
   v1::DeviceEnvelope envelope;
   if (!envelope.ParseFromArray(message.data(), static_cast<int>(message.size()))) {
     return InvalidData("a message is not a DeviceEnvelope");
   }
   if (!envelope.has_attach() && !envelope.has_input_report() && !envelope.has_detach()) {
     return InvalidData("a page may attach an inertial sensor, send its reports and detach it");
+  }
+  if (first && !envelope.has_attach()) {
+    return InvalidData("the connection to footingd is new: attach the sensor again");
   }
   const v1::DeviceAttach& attach = envelope.attach();
   if (envelope.has_attach() && !stream::IsInertialSensor(attach.vendor(), attach.product())) {
@@ -160,7 +163,7 @@ class Mailbox : public std::enable_shared_from_this<Mailbox> {
     Result<void> checked = {};
     const auto fed = transport::FrameSplitter(transport::kMaxDeviceBytes)
                          .Feed(body, [&](std::string_view message) {
-                           checked = CheckDevice(message);
+                           checked = CheckDevice(message, !std::exchange(begun_, true));
                            messages.emplace_back(message);
                            return checked.ok();
                          });
@@ -186,6 +189,7 @@ class Mailbox : public std::enable_shared_from_this<Mailbox> {
   timer::Timer away_;
   std::unique_ptr<transport::FramedConnection> server_;
   std::vector<std::string> early_;
+  bool begun_ = false;
   std::string answer_;
   std::string over_;  ///< Why there is no connection any more.
 };
@@ -296,7 +300,7 @@ class Bridge : public std::enable_shared_from_this<Bridge> {
   Result<std::string> Checked(std::string_view message) {
     if (carries_ == Carries::kSession && !said_hello_) return CheckHello(message);
     if (carries_ == Carries::kDevices) {
-      if (const auto checked = CheckDevice(message); !checked) return checked.error();
+      if (const auto checked = CheckDevice(message, !said_hello_); !checked) return checked.error();
     }
     return std::string(message);
   }

@@ -56,7 +56,7 @@ SCHEMAS = {
         7: ("confidence", "double"), 8: ("simulated", "bool"), 9: ("tracker", "text"),
         10: ("covariance_m2", "vector3"), 11: ("saturated", "bool"), 12: ("occluded", "bool"), 14: ("joint", "int")},
     "hands": {1: ("samples", "*hand_sample")},
-    "applied_input": {1: ("step", "uint"), 15: ("push_number", "uint"), 16: ("push_x_ns", "double"),
+    "applied_input": {1: ("step", "uint"), 3: ("sensor_sequence", "uint"), 15: ("push_number", "uint"), 16: ("push_x_ns", "double"),
                       17: ("push_y_ns", "double")},
     "inputs": {1: ("inputs", "*applied_input")},
     "reference_pose": {1: ("rig", "text"), 2: ("sampled_ns", "int"),

@@ -122,11 +122,15 @@ def flood(addresses, kind, sessions, ready, end):
 
 
 def measure(address, seconds, results, priority=0):
+    measure_ticks(harness.read_ticks(address, seconds, ["status"]), results, priority)
+
+
+def measure_ticks(ticks, results, priority=0):
     """Ticks a second, the largest hole, and quantiles of the delay, of one healthy session."""
     if priority:
         set_priority(priority)
     delays_ms, arrivals = [], []
-    for tick in harness.read_ticks(address, seconds, ["status"]):
+    for tick in ticks:
         if tick.get("snapshot"):
             continue
         now_ns = time.monotonic_ns()

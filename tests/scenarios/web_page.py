@@ -205,10 +205,23 @@ def check_codes(port, code):
     # A Wiimote: what a page may attach is an inertial sensor.
     page.send(bytes_field(1, number_field(3, 0x057e) + number_field(4, 0x0306) + bytes_field(6, b"1")))
     assert "inertial sensor only" in page.receive()[1]
+    check_requests(port, cookie, own)
     for origin, path, expected in ((None, "/session/0", 101), ("http://attacker.example", "/session/0", 403),
                                    (None, "/session/9", 404)):
         assert WebSocket(port, path, origin=origin).status == expected, (origin, path)
     assert WebSocket(port, "/session/0", host="attacker.example").status == 403
+
+
+def check_requests(port, cookie, own):
+    """Without a WebSocket: a connection that is new attaches first, so the page of one that is gone does it again."""
+    def post(message):
+        return ask(port, "/devices", "POST", struct.pack("<I", len(message)) + message, Cookie=cookie, **own)[:2]
+
+    status, text = post(bytes_field(2, number_field(1, 0)))
+    assert status == 400 and "attach the sensor again" in text, (status, text)
+    attach = number_field(3, 0xf007) + number_field(4, 1) + bytes_field(6, b"phone-1")
+    assert post(bytes_field(1, attach))[0] == 200
+    assert post(bytes_field(5, b""))[0] == 200
 
 
 def check_tls(stage):
@@ -405,7 +418,7 @@ def check_live(stage, pictures):
         print(f"first picture {time.monotonic() - began:.1f} s after the servers were started")
         page.wait_for("window.footing().devices === 2 && document.getElementById('devices').innerText.includes('left hand')")
         page.wait_for("/step|walk|run|jump/.test(document.getElementById('gait').textContent)")
-        assert page.evaluate("!document.getElementById('simulated').hidden"), "simulated input is marked"
+        page.wait_for("!document.getElementById('simulated').hidden")
         check_picture(page)
         for name, width, height, dark in (("desktop", 1280, 720, False), ("tablet", 820, 1180, False), ("phone", 390, 844, True)):
             page.show(width, height, dark)

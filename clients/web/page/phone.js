@@ -13,7 +13,7 @@ const NO_MOTION_AFTER_MS = 2000, REDIAL_MS = 500;
 const MOST_WAITING = 240;  // Samples: 4 s. Older ones are of no use, and are counted as lost.
 const MOST_BUFFERED_BYTES = 2048;
 // Where a browser opens no WebSocket (iOS to a host whose certificate is not installed), requests.
-const FAILURES_UNTIL_POST = 2, POST_EVERY_MS = 60;
+const FAILURES_UNTIL_POST = 2, POST_EVERY_MS = 20;
 const POST = new URLSearchParams(location.search).has('post');
 
 const element = id => document.getElementById(id);
