@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "common/base/units.h"
 #include "daemon/simulation/biped/body_state.h"
@@ -96,7 +97,15 @@ void FadeStyle(const Context& context, GaitMemory& memory) {
   if (!style.there) return;
   if (IsHopping(style.gait) != IsHopping(memory.gait)) style.share = 0;
   style.gait = memory.gait;
-  const double wanted = RegularShare(context, memory), before = style.share;
+  const double before = style.share;
+  // Looking at the ground takes time: without style, once in some steps is enough.
+  constexpr std::int64_t kLooksEvery = 20;
+  const bool sees = context.seen_ground != nullptr;
+  if (sees && before == 0 &&
+      std::llround(context.body.time_s / context.step_s) % kLooksEvery != 0) {
+    return;
+  }
+  const double wanted = RegularShare(context, memory);
   const FadeGains& gains = context.gains.fade;
   style.share = std::clamp(wanted, before - context.step_s / gains.out_s,
                            before + context.step_s / gains.in_s);
