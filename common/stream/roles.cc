@@ -60,4 +60,11 @@ std::uint32_t LedsOf(DeviceRole role) {
   return 0;
 }
 
+bool HasStick(const DeviceStatus& device) {
+  return device.extension == Extension::kNunchuk ||
+         device.extension == Extension::kMotionPlusNunchuk ||
+         device.kind == DeviceKind::kJoyConLeft || device.kind == DeviceKind::kJoyConRight ||
+         device.kind == DeviceKind::kSwitchProController;
+}
+
 }  // namespace footing::stream

@@ -20,4 +20,7 @@ std::vector<DeviceRole> RolesOf(UserInterface interface, TurnSource turn_by);
 /// one, dark on the right one. 0 without a role.
 std::uint32_t LedsOf(DeviceRole role);
 
+/// Whether it has what the joystick interface reads: the stick of a Nunchuk, or one of its own.
+bool HasStick(const DeviceStatus& device);
+
 }  // namespace footing::stream

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/base/text.h"
+#include "common/stream/roles.h"
 
 namespace footing::study::gate {
 namespace {
@@ -20,19 +21,14 @@ const DeviceStatus* WithRole(DeviceRole role, const std::vector<DeviceStatus>& d
   return found;
 }
 
-bool HasNunchuk(const DeviceStatus& device) {
-  return device.extension == stream::Extension::kNunchuk ||
-         device.extension == stream::Extension::kMotionPlusNunchuk;
-}
-
-/// Device of a role that the interface needs; null: none. The joystick is in the hand whose Wiimote
-/// has the Nunchuk.
+/// Device of a role that the interface needs; null: none. The joystick is in the hand whose device
+/// has a stick.
 const DeviceStatus* DeviceOf(DeviceRole role, const std::string& interface,
                              const std::vector<DeviceStatus>& devices) {
   const DeviceStatus* device = WithRole(role, devices);
-  if (interface != "joystick" || (device != nullptr && HasNunchuk(*device))) return device;
+  if (interface != "joystick" || (device != nullptr && stream::HasStick(*device))) return device;
   const DeviceStatus* other = WithRole(DeviceRole::kLeftHand, devices);
-  return device == nullptr || (other != nullptr && HasNunchuk(*other)) ? other : device;
+  return device == nullptr || (other != nullptr && stream::HasStick(*other)) ? other : device;
 }
 
 /// A head's controller is worn as its frame is, and hands need no mounting (docs/interfaces.md).
@@ -96,9 +92,9 @@ std::vector<std::string> Problems(const plan::DeviceGate& gate, const plan::Play
       continue;
     }
     Check(gate, *device, problems);
-    if (played.interface == "joystick" && !HasNunchuk(*device)) {
+    if (played.interface == "joystick" && !stream::HasStick(*device)) {
       problems.push_back(std::string(stream::Name(device->role)) + " (" + device->serial +
-                         ") has no Nunchuk; plug one into it");
+                         ") has no Nunchuk; plug one into it, or use a Joy-Con");
     }
   }
   return problems;

@@ -254,7 +254,9 @@ double Meter::SecondsOf(const char* quantity) const {
 Result<void> Meter::CheckDevices() const {
   if (played_.interface == "joystick") {
     if (seen_s_ > 0) return {};
-    return NoDevice("no stick has sent anything; plug the Nunchuk into the Wiimote of a hand");
+    return NoDevice(
+        "no stick has sent anything; plug the Nunchuk into the Wiimote of a hand, or "
+        "use a Joy-Con");
   }
   std::uint32_t missing = 0;
   for (const DeviceRole role : plan::RolesOf(played_)) {

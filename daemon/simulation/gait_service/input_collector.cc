@@ -7,13 +7,13 @@
 
 #include "common/base/units.h"
 #include "common/board/geometry.h"
+#include "common/stream/roles.h"
 #include "common/wire/wire.h"
 #include "daemon/simulation/serving/messages.h"
 
 namespace footing::gait_service {
 namespace {
 
-using stream::DeviceKind;
 using stream::DeviceRole;
 using stream::DeviceStatus;
 using stream::Extension;
@@ -22,18 +22,11 @@ using stream::UserInterface;
 /// Bit in a Wiimote's two button bytes, as MotionSample has them.
 constexpr std::uint32_t kButtonA = 0x0008;
 
-bool HasStick(const DeviceStatus& device) {
-  return device.extension == Extension::kNunchuk ||
-         device.extension == Extension::kMotionPlusNunchuk ||
-         device.kind == DeviceKind::kJoyConLeft || device.kind == DeviceKind::kJoyConRight ||
-         device.kind == DeviceKind::kSwitchProController;
-}
-
 /// Whether the device can have what the interface reads: a stick of its own, or that of a Nunchuk.
 /// One that has not said yet what is plugged in may have it.
 bool MayServe(const DeviceStatus& device, UserInterface interface) {
   return interface != UserInterface::kJoystick || device.extension == Extension::kUnspecified ||
-         HasStick(device);
+         stream::HasStick(device);
 }
 
 /// A sample that is used as it is: decoded when it arrived, it then waited for its tick.
@@ -89,7 +82,7 @@ DeviceRole InputCollector::StickRole() const {
   for (const DeviceStatus& device : sensors_.devices()) {
     const DeviceRole hand = sensors_.RoleOf(device.device);
     if (hand == DeviceRole::kUnspecified || !MayServe(device, options_.interface)) continue;
-    if (HasStick(device)) return hand;
+    if (stream::HasStick(device)) return hand;
     role = hand;
     ++hands;
   }

@@ -61,6 +61,9 @@ TEST(DeviceGate, NeedsTheNunchukOfAJoystickInEitherHand) {
   }
   devices.back().extension = stream::Extension::kMotionPlusNunchuk;
   EXPECT_THAT(Problems({}, {"joystick"}, devices), IsEmpty());
+  DeviceStatus joycon = Good(DeviceRole::kLeftHand);
+  joycon.kind = stream::DeviceKind::kJoyConLeft;
+  EXPECT_THAT(Problems({}, {"joystick"}, {joycon}), IsEmpty()) << "it has a stick of its own";
 }
 
 TEST(DeviceGate, NeedsOfTheLegsWhatTurns) {
