@@ -11,6 +11,7 @@
 
 #include "common/cli/cli.h"
 #include "common/runtime/clock.h"
+#include "common/virtual/devices/noise.h"
 #include "tests/vm/made_device.h"
 #include "tests/vm/ramp.h"
 #include "tests/vm/uhid_node.h"
@@ -26,6 +27,7 @@ struct Options {
   double unplug_at_s = 0;     ///< 0: never.
   double away_s = 0;          ///< 0: it never comes back.
   int times = 1;
+  double loss = 0;
   bool trace = false;
 };
 
@@ -48,7 +50,8 @@ class Life {
         begin_ns_(clock::MonotonicNs()),
         next_sample_ns_(begin_ns_),
         next_status_ns_(begin_ns_ + Nanoseconds(options.status_every_s)),
-        next_change_ns_(begin_ns_ + Nanoseconds(options.unplug_at_s)) {}
+        next_change_ns_(begin_ns_ + Nanoseconds(options.unplug_at_s)),
+        random_(options.seed) {}
 
   void Run(const volatile sig_atomic_t& stop) {
     Plug();
@@ -67,11 +70,18 @@ class Life {
   }
 
   nlohmann::json Summary() const {
-    return {{"kind", options_.kind},        {"serial", serial_},
-            {"samples", samples_},          {"inputs", Counts(inputs_)},
-            {"outputs", Counts(outputs_)},  {"foreign_modes", foreign_modes_},
-            {"features", features_},        {"starts_ns", starts_ns_},
-            {"unplugs_ns", unplugs_ns_},    {"late_worst_ms", late_worst_ms_},
+    return {{"kind", options_.kind},
+            {"serial", serial_},
+            {"samples", samples_},
+            {"inputs", Counts(inputs_)},
+            {"outputs", Counts(outputs_)},
+            {"foreign_modes", foreign_modes_},
+            {"features", features_},
+            {"starts_ns", starts_ns_},
+            {"lost", lost_},
+            {"foreign_commands", foreign_commands_},
+            {"unplugs_ns", unplugs_ns_},
+            {"late_worst_ms", late_worst_ms_},
             {"late_samples", late_samples_}};
   }
 
@@ -91,6 +101,7 @@ class Life {
   void Plug() {
     device_ = MakeDevice(options_.kind, options_.seed);
     serial_ = device_->identity().serial;
+    period_ns_ = device_->period_ns();
     node_.Plug(device_->identity(), device_->descriptor());
   }
 
@@ -118,6 +129,16 @@ class Life {
     ++outputs_[report[0]];
     // footingd asks for continuous reports only; it is the kernel's driver that does not.
     if (report[0] == 0x12 && report.size() > 1 && (report[1] & 0x04) == 0) ++foreign_modes_;
+    if (report[0] == 0x01 && report.size() > 10) {
+      // The kernel's driver of the Switch's controllers sets up with zeros for the motor; footingd
+      // always sends what stops it, 00 01 40 40. Only its subcommands get lost.
+      const bool foreign = report[3] == 0;
+      foreign_commands_ += foreign ? 1 : 0;
+      if (!foreign && random_.Uniform() < options_.loss) {
+        ++lost_;
+        return;
+      }
+    }
     Send(device_->HandleOutput(clock::MonotonicNs(), report));
   }
 
@@ -127,7 +148,7 @@ class Life {
     late_samples_ += late_ms > kLateMs ? 1 : 0;
     if (device_) Send(device_->Sample(now_ns, samples_));
     ++samples_;
-    next_sample_ns_ += kSamplePeriodNs;
+    next_sample_ns_ += period_ns_;
     if (device_ && options_.status_every_s > 0 && now_ns >= next_status_ns_) {
       Send(device_->Status());
       next_status_ns_ += Nanoseconds(options_.status_every_s);
@@ -158,8 +179,12 @@ class Life {
   std::uint64_t samples_ = 0;
   CountById inputs_;   ///< To the kernel.
   CountById outputs_;  ///< From footingd and from the kernel's driver.
+  std::int64_t period_ns_ = kSamplePeriodNs;
   std::uint64_t foreign_modes_ = 0;
-  std::uint64_t features_ = 0;  ///< Feature reports asked for.
+  noise::Random random_;
+  std::uint64_t lost_ = 0;
+  std::uint64_t foreign_commands_ = 0;  ///< From the kernel's driver, to a Joy-Con.
+  std::uint64_t features_ = 0;          ///< Feature reports asked for.
   std::vector<std::int64_t> starts_ns_;
   std::vector<std::int64_t> unplugs_ns_;
   double late_worst_ms_ = 0;
@@ -176,6 +201,8 @@ int Run(int argc, char** argv) {
   app->add_option("--kind", options.kind, "Which device")->check(CLI::IsMember(Kinds()));
   app->add_option("--seed", options.seed, "Which device of its kind; its serial too");
   app->add_option("--seconds", options.seconds, "Its life; 0: until SIGTERM");
+  app->add_option("--lose", options.loss,
+                  "Share of footingd's subcommands to a Joy-Con that get lost");
   app->add_option("--status-every", options.status_every_s, "Status reports that nobody asked for");
   app->add_option("--unplug-at", options.unplug_at_s, "Goes after so many seconds");
   app->add_option("--replug-after", options.away_s, "Comes back after so many seconds");

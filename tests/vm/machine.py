@@ -10,7 +10,7 @@ import subprocess
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-MODULES = ("uhid", "hid-wiimote", "hid-generic", "hid-sony", "hid-playstation", "evdev")
+MODULES = ("uhid", "hid-wiimote", "hid-generic", "hid-sony", "hid-playstation", "hid-nintendo", "evdev")
 KEPT_DRIVERS = ("hid", "input", "leds", "usb")  # What those depend on, too.
 TOOLS = ("qemu-system-x86_64", "busybox", "cpio", "depmod", "dpkg-deb", "apt-get", "ldd")
 BEGIN, END = "footing-vm: results begin", "footing-vm: results end"

@@ -2,6 +2,7 @@
 
 #include "common/base/units.h"
 #include "common/virtual/devices/controller.h"
+#include "common/virtual/devices/joycon.h"
 #include "common/virtual/devices/wiimote.h"
 #include "tests/vm/ramp.h"
 #include "tests/vm/report_descriptor.h"
@@ -85,10 +86,31 @@ class MadeMove : public MadeDevice {
   std::uint64_t samples_a_report_;
 };
 
+class MadeJoycon : public MadeDevice {
+ public:
+  explicit MadeJoycon(std::uint64_t seed) : joycon_(seed, virtual_devices::JoyconModel::kLeft) {}
+  const virtual_devices::Identity& identity() const override { return joycon_.identity(); }
+  Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) override {
+    return joycon_.HandleOutput(now_ns, report);
+  }
+  Reports Sample(std::int64_t now_ns, std::uint64_t sample) override {
+    virtual_devices::JoyconBurst burst;
+    for (std::size_t i = 0; i < burst.size(); ++i) {
+      burst[i].specific_force_S_mps2.x() = kForceRampMps2.At(burst.size() * sample + i);
+    }
+    return joycon_.Sample(now_ns, burst);
+  }
+  std::int64_t period_ns() const override { return 15'000'000; }
+  std::span<const std::uint8_t> descriptor() const override { return kJoyconDescriptor; }
+
+ private:
+  virtual_devices::Joycon joycon_;
+};
+
 }  // namespace
 
 std::vector<std::string> Kinds() {
-  return {"wiimote", "wiimote_plus", "board", "move_zcm1", "move_zcm2"};
+  return {"wiimote", "wiimote_plus", "board", "move_zcm1", "move_zcm2", "joycon"};
 }
 
 std::unique_ptr<MadeDevice> MakeDevice(const std::string& kind, std::uint64_t seed) {
@@ -97,6 +119,7 @@ std::unique_ptr<MadeDevice> MakeDevice(const std::string& kind, std::uint64_t se
   if (kind == "board") return std::make_unique<MadeBoard>(seed);
   if (kind == "move_zcm1") return std::make_unique<MadeMove>(seed, MoveModel::kZcm1);
   if (kind == "move_zcm2") return std::make_unique<MadeMove>(seed, MoveModel::kZcm2);
+  if (kind == "joycon") return std::make_unique<MadeJoycon>(seed);
   return nullptr;
 }
 
