@@ -19,6 +19,7 @@
 #include "clients/web/foxglove_feed.h"
 #include "common/base/osc.h"
 #include "common/base/text.h"
+#include "common/base/units.h"
 #include "common/cli/cli.h"
 #include "common/net/access.h"
 #include "common/net/client.h"
@@ -742,7 +743,7 @@ class Reception {
       return Refuse(http::status::forbidden, "pages of other origins are refused\n");
     }
     if (!SocketOf(request) && PathOf(request) != "/skeleton") {
-      return Refuse(http::status::not_found, "there is no such socket\n");
+      return Refuse(http::status::not_found, "this socket does not exist\n");
     }
     return Refuse(http::status::forbidden, NeedsCode(request) + "\n");
   }
@@ -863,7 +864,8 @@ void CheckCertificate(Desk& desk) {
   for (const auto& server : desk.servers) {
     if (server->address().kind != transport::Address::Kind::kTls) continue;
     const std::string host = CalledHost(desk, server->address());
-    const std::string fault = desk.identity->FaultFor(host, clock::WallNs() / 1'000'000'000);
+    const std::string fault =
+        desk.identity->FaultFor(host, clock::WallNs() / kNanosecondsPerSecond);
     if (fault.empty()) continue;
     log::Warning("the certificate " + fault + ", so browsers refuse https://" + host +
                  "; renew it or name the right host, and restart footing-web (Certificates in "

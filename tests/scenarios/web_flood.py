@@ -112,7 +112,7 @@ def measure_page(port, seconds, results, priority):
 
 
 def one_run(addresses, kind, pages, seconds, priority):
-    """What a client of footingd and a page measure beside a crowd."""
+    """Times of a client of footingd and of a page, beside a crowd."""
     ready, end = multiprocessing.Event(), multiprocessing.Event()
     results = {"client": multiprocessing.Queue(), "page": multiprocessing.Queue()}
     processes = [multiprocessing.Process(target=flood.measure, args=(addresses["unix"], seconds, results["client"], priority)),

@@ -44,7 +44,7 @@ def move(phone, motions, seed=1):
 
 
 def delays(moved, sensor, simulation):
-    """Of each motion, in ms: to footingd, to the character."""
+    """The delays of each motion, ms: to footingd, to the character."""
     seen = {}
     for tick in sensor:
         for sample in tick.get("motion", {}).get("samples", []):

@@ -4,7 +4,7 @@ const pause = ms => new Promise(done => setTimeout(done, ms));
 
 export const sentence = text => text && `${text[0].toUpperCase()}${text.slice(1)}.`;
 
-// Of footing-web and this browser: its rights, and what it needs to have more of them.
+// The rights of this browser, and how it gets more.
 const ask = async () => (await fetch('/about.json')).json();
 
 // Reads what footing-web says about itself and this browser; waits until it answers. `say` gets what is

@@ -91,11 +91,11 @@ export function showNumbers(list, character) {
   ] : []);
 }
 
+// Whole seconds as minutes and seconds, such as 1:05.
+export const clockFace = seconds => `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
+
 // A countdown that had `left` seconds, `passed` seconds later.
-const clock = (left, passed) => {
-  const seconds = Math.ceil(Math.max(0, left - passed));
-  return left > 0 ? `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}` : undefined;
-};
+const clock = (left, passed) => left > 0 ? clockFace(Math.ceil(Math.max(0, left - passed))) : undefined;
 
 // Where a study stands, for the experimenter. `passed`: since that was sent, s.
 export function showStudy(panel, title, doing, list, study, passed) {

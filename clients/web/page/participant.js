@@ -1,6 +1,7 @@
 // The participant's screen of a study: what comes next, as footing-view --subject says it, and the survey of
 // footing-study, one question at a time. Each answer is in the study's journal before the next question comes.
 import { enter, sentence, whyClosed } from './entry.js';
+import { clockFace } from './panels.js';
 import { ENUMS } from './schema.js';
 import { Session } from './session.js';
 
@@ -11,7 +12,7 @@ const RUNNING = 2;  // Of TrialState.Phase: from the start line on.
 const element = id => document.getElementById(id);
 const say = (id, text) => { if (element(id).textContent !== text) element(id).textContent = text; };
 
-// What has come: the study's state and when, the trial, and what the survey shows (number 0: a message).
+// The study's state and when it came, the trial, and what the survey shows (number 0: a message).
 const state = { study: null, at: 0, trial: null, shown: null, sent: false, sessions: [], wrong: '' };
 let socket = null;
 
@@ -24,11 +25,7 @@ function phaseWords(phase) {
   return words ? `Next: ${words}` : '';
 }
 
-function clockText(left) {
-  if (!(left > 0)) return '';
-  const seconds = Math.ceil(left);
-  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
-}
+const clockText = left => left > 0 ? clockFace(Math.ceil(left)) : '';
 
 // Headline, countdown and detail of an instruction.
 function instruction() {

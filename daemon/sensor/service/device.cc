@@ -125,16 +125,16 @@ void SampleTiming::Restart(const decode::Timing& timing) {
 
 void SampleTiming::Take(std::int64_t received_ns, const decode::Decoded& decoded) {
   statistics_.Advance(received_ns);
-  own_times_ = decoded.own_times;
   std::int64_t newest_ns = 0;
-  if (own_times_) {
+  if (decoded.own_times) {
     const std::int64_t own_ns = decoded.motion.back().sampled_ns;
     own_clock_.Take(received_ns, own_ns);
     newest_ns = std::min(own_clock_.HostNs(own_ns), received_ns);
   } else {
-    own_clock_ = link::OwnClock(timing_.own_rate_range);
+    if (own_times_) own_clock_ = link::OwnClock(timing_.own_rate_range);
     newest_ns = clock_.Advance(received_ns, decoded.changed);
   }
+  own_times_ = decoded.own_times;
   sampled_ns_ = std::max(sampled_ns_, newest_ns);
 }
 

@@ -33,8 +33,8 @@ struct EngineTexts {
   /// kGainFiles, and more: a later one replaces what an earlier one had for its gaits. None: the
   /// defaults of gains.h.
   std::vector<GainText> gains;
-  std::vector<GainText>
-      style;  ///< kStyleFiles: gains of the same gaits with their style. May be none.
+  /// kStyleFiles: gains of the same gaits with their style. May be none.
+  std::vector<GainText> style;
 };
 inline constexpr const char* kBipedFile = "biped.json";
 inline constexpr const char* kPlainTrackFile = "tracks/plain.json";

@@ -480,10 +480,14 @@ Targets AdvanceWalking(const Context& context, GaitMemory& memory) {
   const WalkingPhase next = Next(memory.walking, SenseWalking(context, memory));
   if (next != memory.walking) Enter(next, context, memory);
   FollowGround(context, memory);
+  const double foresight = context.gains.style.foresight;
+  const bool both = memory.walking == WalkingPhase::kDoubleSupport;
+  // Without style nothing follows a foothold before its foot leaves the ground.
+  if (both && !memory.style.there && foresight == 0) return WalkingTargets(context, memory);
   const WalkingFoothold foothold = PlanWalkingFoothold(context, memory);
   memory.style.excess_m = foothold.excess_m;
-  if (memory.walking == WalkingPhase::kDoubleSupport) {
-    memory.phase_start_s -= context.gains.style.foresight * foothold.hurry * context.step_s;
+  if (both) {
+    memory.phase_start_s -= foresight * foothold.hurry * context.step_s;
     return WalkingTargets(context, memory);
   }
   memory.foothold_W_m = foothold.p_WF_m;
