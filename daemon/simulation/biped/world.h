@@ -62,6 +62,8 @@ struct WorldState {
   double root_force_max_n = 0;
 };
 
+struct WorldModel;
+
 /// One world. Stepping and observing allocate nothing.
 class World {
  public:
@@ -98,12 +100,17 @@ class World {
   WorldState Save() const;
   void Restore(const WorldState& state);
 
+  /// Another state of the same world: one model and one ground, whose boxes move for both. For one
+  /// thread, as this one. Restore first.
+  World Twin() const;
+
   /// The same world stepped by bare mj_step, for measuring what all else costs.
   void StepBare(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n);
 
  private:
   struct Parts;
   explicit World(std::unique_ptr<Parts> parts);
+  static std::unique_ptr<Parts> MakeParts(std::shared_ptr<WorldModel> shared);
   std::unique_ptr<Parts> parts_;
 };
 
@@ -159,16 +166,21 @@ Result<int> IdOf(const mjModel& model, mjtObj type, const std::string& name);
 inline constexpr int kRootDofs = 6;
 inline constexpr int kDofs = kRootDofs + kJoints;
 
-/// MuJoCo's model and state, and where the links are in them.
-struct World::Parts {
+/// MuJoCo's model, and where the links are in it.
+struct WorldModel {
   ModelPointer model;
-  StatePointer state;
   std::array<int, kLinks> links{};
   std::array<int, kLegs> hips{};
   std::array<int, kLegs> feet{};
   std::vector<int> ground;
   Clearance clearance;
   double mass_kg = 0;
+};
+
+/// A model, which twins share, and its state.
+struct World::Parts {
+  std::shared_ptr<WorldModel> shared;
+  StatePointer state;
   std::uint64_t steps = 0;
   /// As integrated: mj_step1 normalises qpos in place, and doing so twice may change the last bit.
   std::array<double, 4> root_quaternion{1, 0, 0, 0};

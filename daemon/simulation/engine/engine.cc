@@ -53,27 +53,32 @@ Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& 
   if (!gain_table) return gain_table.error();
   const Result<gait::GainTable> style_table = TableOf(texts.style);
   if (!style_table) return style_table.error();
+  Result<GainChoices> choices = texts.choices.text.empty()
+                                    ? GainChoices()
+                                    : ReadChoices(texts.choices.text, texts.choices.origin);
+  if (!choices) return choices.error();
   Result<std::unique_ptr<TrackWorld>> on = MakeTrackWorld(std::move(track), *biped, config.step_s);
   if (!on) return on.error();
 
-  auto parts = std::make_unique<Parts>(Parts{.config = config,
-                                             .biped = *biped,
-                                             .gain_table = *gain_table,
-                                             .style_table = *style_table,
-                                             .gains = {},
-                                             .skeleton = biped::DescribeSkeleton(*biped),
-                                             .on = std::move(**on),
-                                             .state = {.world = {},
-                                                       .gait = {},
-                                                       .interface = *interface,
-                                                       .command = {},
-                                                       .inputs = {},
-                                                       .response = {},
-                                                       .track = {},
-                                                       .trial = {}},
-                                             .body = {},
-                                             .place = {},
-                                             .output = {}});
+  auto parts = std::make_unique<Parts>(
+      Parts{.config = config,
+            .biped = *biped,
+            .tables = {.plain = *gain_table, .style = *style_table, .choices = std::move(*choices)},
+            .gains = {},
+            .gains_ahead = {},
+            .skeleton = biped::DescribeSkeleton(*biped),
+            .on = std::move(**on),
+            .state = {.world = {},
+                      .gait = {},
+                      .interface = *interface,
+                      .command = {},
+                      .inputs = {},
+                      .response = {},
+                      .track = {},
+                      .trial = {}},
+            .body = {},
+            .place = {},
+            .output = {}});
   parts->BeginOnTrack();
   parts->state.trial = trial::Begin(parts->on.track, trial::DrawTask(parts->on.track, 0));
   return GaitEngine(std::move(parts));
@@ -137,9 +142,9 @@ const stream::Skeleton& GaitEngine::skeleton() const { return parts_->skeleton; 
 const stream::Track& GaitEngine::track() const { return parts_->on.track; }
 
 void GaitEngine::UseGains(const gait::GainTable& table) {
-  parts_->gain_table = table;
-  parts_->style_table = {};
-  parts_->gains_gait = stream::Gait::kUnspecified;
+  parts_->tables = {.plain = table, .style = {}, .choices = {}};
+  parts_->gains.Forget();
+  parts_->gains_ahead.Forget();
 }
 
 EngineState GaitEngine::Save() const {

@@ -35,6 +35,8 @@ struct EngineTexts {
   std::vector<GainText> gains;
   /// kStyleFiles: gains of the same gaits with their style. May be none.
   std::vector<GainText> style;
+  /// kChoicesFile: what foresight (foresight.h) chooses from. An empty text: none.
+  GainText choices;
 };
 inline constexpr const char* kBipedFile = "biped.json";
 inline constexpr const char* kPlainTrackFile = "tracks/plain.json";
@@ -42,6 +44,7 @@ inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gait
                                        "gaits/jump.csv"};
 inline constexpr std::array kStyleFiles{"gaits/style/step.csv", "gaits/style/walk.csv",
                                         "gaits/style/run.csv"};
+inline constexpr const char* kChoicesFile = "gaits/choices.csv";
 /// After those, the gaits as the gait paper prints them.
 inline constexpr std::array kPaperGainFiles{"gaits/paper/step.csv", "gaits/paper/walk.csv",
                                             "gaits/paper/run.csv", "gaits/paper/jump.csv"};
@@ -212,7 +215,8 @@ class GaitEngine {
   /// have a new number. Allocates nothing.
   void UseTrack(TrackWorld& other);
 
-  /// Other gains from the next step on, without style; not part of the state. Allocates.
+  /// Other gains from the next step on, without style and foresight; not part of the state.
+  /// Allocates.
   void UseGains(const gait::GainTable& table);
 
   /// Everything that changes with time, as a value (state.h); Restore brings an engine on the same

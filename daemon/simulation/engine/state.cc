@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/units.h"
+#include "common/stream/gait.h"
 #include "common/stream/trial.h"
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/biped/ground.h"
@@ -13,6 +14,7 @@
 #include "daemon/simulation/biped/track.h"
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/gait/controller.h"
+#include "daemon/simulation/gait/style.h"
 
 namespace footing::engine {
 
@@ -28,12 +30,14 @@ Result<std::unique_ptr<TrackWorld>> MakeTrackWorld(stream::Track track,
   Result<physics::World> world = physics::World::FromMjcf(
       biped::WriteMjcf(biped, ground.mjcf, ground.names, step_s), biped::Names(boxes));
   if (!world) return world.error();
+  physics::World twin = world->Twin();
   auto made = std::make_unique<TrackWorld>(TrackWorld{.track = std::move(track),
                                                       .sight = {},
                                                       .sees_ground = false,
                                                       .first_segments = {},
                                                       .window = window,
-                                                      .world = std::move(*world)});
+                                                      .world = std::move(*world),
+                                                      .twin = std::move(twin)});
   if (!made->track.help_over_pits) made->sight = terrain::WithPitsFilled(made->track);
   made->sees_ground = !terrain::IsLevel(made->track.help_over_pits ? made->track : made->sight);
   if (terrain::Grows(made->track)) {
@@ -58,7 +62,7 @@ void GaitEngine::Parts::AddEvent(const EngineEvent& event) {
 }
 
 void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) {
-  const double leg_m = gait::StandingLength(biped, gain_table.At(stream::Gait::kStep, 0));
+  const double leg_m = gait::StandingLength(biped, tables.plain.At(stream::Gait::kStep, 0));
   const double height_m = biped.foot_radius_m + leg_m + biped.hip_below_body_com_m;
   std::array<double, physics::kJoints> joints{};
   joints[3] = joints[7] = leg_m - biped.leg_length_m;
@@ -148,25 +152,14 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
   AddEvent({.kind = EventKind::kGaitCommanded, .from = before, .to = state.command.gait});
 }
 
-void GaitEngine::Parts::ChooseGains() {
-  const stream::Gait gait = state.gait.transition.thrusting ? stream::Gait::kRun : state.gait.gait;
-  const double speed_mps = state.gait.speed.desired_mps;
-  state.gait.style.there = !style_table.SetsOf(gait).empty();
-  const double style = state.gait.style.there ? state.gait.style.share : 0;
-  if (gait == gains_gait && speed_mps == gains_speed_mps && style == gains_style) return;
-  gains = gain_table.At(gait, speed_mps);
-  if (style > 0) gains = gait::Between(gains, style_table.At(gait, speed_mps), style);
-  gains_gait = gait;
-  gains_speed_mps = speed_mps;
-  gains_style = style;
-}
-
 void GaitEngine::Parts::StepWorld() {
-  ChooseGains();
+  const gait::GaitMemory before = state.gait;
+  const bool pushed = state.inputs.push_steps_left > 0;
   output.joint_efforts = {};
   if (!state.fallen) {  // A fallen character is limp.
+    const gait::Gains& now = gains.At(tables, state.foresight.chosen, state.gait);
     output.joint_efforts =
-        gait::Advance(body, biped, gains, state.command, Sight(), config.step_s, state.gait);
+        gait::Advance(body, biped, now, state.command, Sight(), config.step_s, state.gait);
   }
   output.push_W_n.setZero();
   if (state.inputs.push_steps_left > 0) {
@@ -181,6 +174,38 @@ void GaitEngine::Parts::StepWorld() {
   const Eigen::Vector3d moved = body.p_WC - p_WC;
   if (on.track.endless) terrain::FollowCourse(moved.head<2>(), state.track.course);
   state.distance_m += c * moved.x() + s * moved.y();
+  LookAhead(before, pushed && state.inputs.push_steps_left == 0);
+}
+
+void GaitEngine::Parts::LookAhead(const gait::GaitMemory& before, bool push_ended) {
+  const stream::Gait gait = state.gait.transition.thrusting ? stream::Gait::kRun : state.gait.gait;
+  const bool any = !tables.choices[stream::IndexOf(gait)].empty();
+  if (!any || state.fallen) {
+    state.foresight = {};
+    return;
+  }
+  if (state.inputs.push_steps_left > 0 || !(push_ended || ChangesPhase(before, state.gait))) return;
+  const gait::Context context{.body = body,
+                              .biped = biped,
+                              .gains = gains.At(tables, state.foresight.chosen, state.gait),
+                              .goal = state.command,
+                              .seen_ground = Sight(),
+                              .step_s = config.step_s};
+  // Rollouts are exact: until halfway through what they have seen, there is nothing new to see.
+  const std::uint64_t ahead = static_cast<std::uint64_t>(kHorizonS / config.step_s) / 2;
+  const bool certain = state.foresight.stands_until > state.step + ahead;
+  const bool calm =
+      state.foresight.chosen.number == 0 && (certain || gait::IsRegular(context, state.gait));
+  if (calm && !push_ended) return;
+  state.foresight =
+      ChooseAhead({on.world.Save(), state.gait, state.step}, {.biped = biped,
+                                                              .tables = tables,
+                                                              .track = on.track,
+                                                              .sight = Sight(),
+                                                              .command = state.command,
+                                                              .step_s = config.step_s,
+                                                              .twin = on.twin,
+                                                              .gains = gains_ahead});
 }
 
 void GaitEngine::Parts::NoteGait(stream::Gait before) {

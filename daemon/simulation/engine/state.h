@@ -12,6 +12,7 @@
 #include "daemon/simulation/biped/trial.h"
 #include "daemon/simulation/biped/world.h"
 #include "daemon/simulation/engine/engine.h"
+#include "daemon/simulation/engine/foresight.h"
 #include "daemon/simulation/gait/gain_table.h"
 #include "daemon/simulation/gait/targets.h"
 #include "daemon/simulation/mapping/any_interface.h"
@@ -58,6 +59,7 @@ struct EngineState {
   ResponseMemory response;
   TrackMemory track;
   trial::TrialMemory trial;
+  Foresight foresight = {};
   std::uint64_t step = 0;
   stream::FailureCounts failures = {};
   std::uint64_t operator_put_backs = 0;
@@ -78,6 +80,7 @@ struct TrackWorld {
   std::vector<stream::TrackSegment> first_segments;  ///< The file's, on a track that grows.
   terrain::GroundWindow window;                      ///< Boxes that follow the character.
   physics::World world;
+  physics::World twin;  ///< For rollouts.
 };
 
 /// Builds the physics of a track. Allocates, and takes some milliseconds: not for the simulation
@@ -90,12 +93,9 @@ Result<std::unique_ptr<TrackWorld>> MakeTrackWorld(stream::Track track,
 struct GaitEngine::Parts {
   EngineConfig config;
   biped::BipedParameters biped;
-  gait::GainTable gain_table;
-  gait::GainTable style_table;  ///< The same with style; a gait without sets has none.
-  gait::Gains gains;            ///< Gains for gains_gait at gains_speed_mps and gains_style.
-  stream::Gait gains_gait = stream::Gait::kUnspecified;
-  double gains_speed_mps = 0;
-  double gains_style = 0;
+  GainTables tables;
+  GainsInForce gains;
+  GainsInForce gains_ahead;  ///< The same in rollouts.
   stream::Skeleton skeleton;
   TrackWorld on;                                                 ///< The track with its physics.
   std::array<std::uint64_t, terrain::kGroundBoxes> box_holds{};  ///< Segment's number + 1; 0 none.
@@ -128,8 +128,6 @@ struct GaitEngine::Parts {
   void TakeInterface(const EngineInputs& inputs);
   void TakePush(const EngineInputs& inputs);
   void Command(const EngineInputs& inputs);
-  /// Follows the gait that runs and its desired speed; the table is looked up when they change.
-  void ChooseGains();
   /// Puts the character back when the inputs ask for it, or some time after a failure.
   void TakePutBack(const EngineInputs& inputs);
   /// Begins or stops a trial.
@@ -142,6 +140,9 @@ struct GaitEngine::Parts {
   void SaveTrack(TrackMemory& memory) const;
   void RestoreTrack();
   void StepWorld();
+  /// After a push, and at the phases of a gait that is out of its rhythm: chooses gains by
+  /// rollouts.
+  void LookAhead(const gait::GaitMemory& before, bool push_ended);
   void NoteGait(stream::Gait before);
   void NoteTrial();
   void NoteFall();

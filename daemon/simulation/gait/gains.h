@@ -165,7 +165,7 @@ struct PitGains {
 struct RecoveryGains {
   double outrun_mps = 2.2;            ///< A walk pushed beyond this goes on by running steps.
   double idle_yield = 1.25;           ///< Roll of running's idle leg for the body's roll, ...
-  double idle_yield_limit_rad = 0.9;  ///< ... up to this.
+  double idle_yield_limit_rad = 1.4;  ///< ... up to this.
   double spread_mps = 0.5;            ///< At this speed aside a jump's legs are spread in full.
   double jump_yield = 2;              ///< Roll of a jump's far leg for the body's roll beyond ...
   double jump_yield_from_rad = 0.55;  ///< ... this, up to idle_yield_limit_rad.

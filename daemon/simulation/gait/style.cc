@@ -68,7 +68,8 @@ bool IsLevelGround(const Context& context, const GaitMemory& memory) {
   return true;
 }
 
-/// Whether nothing has pushed the body out of its gait.
+}  // namespace
+
 bool IsRegular(const Context& context, const GaitMemory& memory) {
   const FadeGains& gains = context.gains.fade;
   if (context.body.R_WB(2, 2) < std::cos(gains.tilt_rad)) return false;
@@ -80,8 +81,6 @@ bool IsRegular(const Context& context, const GaitMemory& memory) {
   return std::fabs(v_H.x() - memory.speed.desired_mps) < gains.speed_error_mps &&
          std::fabs(v_H.y()) < gains.aside_mps;
 }
-
-}  // namespace
 
 double RegularShare(const Context& context, const GaitMemory& memory) {
   if (ChangesGait(context, memory) || memory.pit.sighting.ahead) return 0;

@@ -13,6 +13,9 @@ double HipRise(const Context& context, const GaitMemory& memory);
 /// The pelvis within a step (StyleGains), and its rates: set-points of a walk's targets.
 void AddStyle(const Context& context, const GaitMemory& memory, Targets& targets);
 
+/// Whether nothing has pushed the body out of its gait (FadeGains).
+bool IsRegular(const Context& context, const GaitMemory& memory);
+
 /// Share of the style, [0, 1], that leaves balance alone: less in a turn, and none while a pit is
 /// in sight, the ground is uneven, another gait is commanded, or the state is not regular, as after
 /// a push (FadeGains).

@@ -82,6 +82,9 @@ EffectiveConfig::EffectiveConfig(const serving::Config& common, const Config& co
   for (const engine::GainText& gains : texts.style) {
     json_["sha256"][gains.origin] = HashOf(gains.text);
   }
+  if (!texts.choices.text.empty()) {
+    json_["sha256"][texts.choices.origin] = HashOf(texts.choices.text);
+  }
   SetInterface(0, engine.interface, texts.mapping,
                config.mapping_table.empty() ? kBuiltInTable : config.mapping_table);
 }
@@ -176,6 +179,11 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
     auto gains = config::ReadDataFile(name, wish.data_folder);
     if (!gains) return gains.error();
     texts.style.push_back({name, std::move(*gains)});
+  }
+  if (styled) {
+    auto choices = config::ReadDataFile(engine::kChoicesFile, wish.data_folder);
+    if (!choices) return choices.error();
+    texts.choices = {engine::kChoicesFile, std::move(*choices)};
   }
   return texts;
 }

@@ -215,7 +215,7 @@ def check_in_force(stage, table):
     stage.start_user("demo")
     config = config_of(stage)
     assert config["interface"]["table"] == json.loads((stage.folder / "group.json").read_text()), config
-    assert config["settings"]["mapping_table"].endswith("group.json") and len(config["sha256"]) == 8, config
+    assert config["settings"]["mapping_table"].endswith("group.json") and len(config["sha256"]) == 9, config
     changed = json.loads(table.read_text())
     changed["walk_speed_max_mps"] = 0.9
     table.write_text(json.dumps(changed))

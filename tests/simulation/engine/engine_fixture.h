@@ -12,7 +12,8 @@ inline EngineTexts Texts() {
                     .track = test::DataFile(kPlainTrackFile),
                     .mapping = test::DataFile(mapping::kWristMappingFile),
                     .gains = {},
-                    .style = {}};
+                    .style = {},
+                    .choices = {}};
   for (const char* name : kGainFiles) texts.gains.push_back({name, test::DataFile(name)});
   return texts;
 }

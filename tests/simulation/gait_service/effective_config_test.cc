@@ -25,6 +25,7 @@ TEST(EffectiveConfig, HasVersionSettingsGainsAndTheTableWithItsValues) {
   for (const char* name : engine::kStyleFiles) {
     EXPECT_EQ(shown["sha256"][name].get<std::string>().size(), 64u) << name;
   }
+  EXPECT_EQ(shown["sha256"][engine::kChoicesFile].get<std::string>().size(), 64u);
   EXPECT_EQ(shown["interface"]["name"], "wrist");
   EXPECT_EQ(shown["interface"]["table_by"], kBuiltInTable);
   EXPECT_EQ(shown["interface"]["table"], json::parse(texts.mapping));
@@ -34,6 +35,7 @@ TEST(EffectiveConfig, NamesThePapersGaitsForAReplay) {
   const auto texts = *engine_files::ReadTexts({.gaits = "paper"});
   ASSERT_EQ(texts.gains.back().origin, engine::kPaperGainFiles.back());
   EXPECT_TRUE(texts.style.empty());
+  EXPECT_EQ(texts.choices.text, "");
   Config config;
   EXPECT_EQ(GaitsIn(EffectiveConfig({}, config, texts, {}).Message()), "best");
   config.gaits = "paper";
