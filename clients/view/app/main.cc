@@ -4,6 +4,7 @@
 #include "clients/view/app/pictures.h"
 #include "clients/view/app/play_session.h"
 #include "clients/view/app/window.h"
+#include "common/base/units.h"
 #include "common/cli/cli.h"
 #include "common/net/address.h"
 #include "common/runtime/log.h"
@@ -161,6 +162,16 @@ void AddPictureOptions(CLI::App& app, Options& options) {
          "(default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"character", "strips", "devices", "interface", "boards"}));
+  app.add_option_function<double>(
+         "--view-angle",
+         [&options](double degrees) {
+           options.look.orbit.azimuth_rad = footing::DegreesToRadians(degrees);
+         },
+         "Turn of the view, degrees: 90 shows the biped from its right side (default 0)")
+      ->check(CLI::Range(-180.0, 180.0));
+  app.add_option("--view-distance", options.look.orbit.distance,
+                 "Distance of the view, 0.3 to 3 times the usual one (default 1)")
+      ->check(CLI::Range(0.3, 3.0));
 }
 
 }  // namespace
@@ -174,7 +185,7 @@ int main(int argc, char** argv) {
       "  footing-view --recording walk.mcap\n"
       "  footing-view --recording study.mcap --trial p07-1 --beside study.mcap:p07-2\n"
       "  footing-view --screenshot bird.png --at 5\n"
-      "  footing-view --recording walk.mcap --record walk.mp4 --record-hz 30\n"
+      "  footing-view --recording walk.mcap --record walk.mp4 --record-hz 30 --view-angle 90\n"
       "  footing-view --camera-preview\n"
       "  footing-view --next-subject p08.json --next-subject p09.json\n"
       "  footing-view --text --seconds 30 --json");

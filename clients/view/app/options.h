@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clients/view/render/hud.h"
+#include "clients/view/scene/camera.h"
 #include "clients/view/scene/timeline.h"
 #include "common/net/address.h"
 #include "footing/v1/command.pb.h"
@@ -34,6 +35,7 @@ struct LookOptions {
   double ui_scale = 1;         ///< Their size over the usual one.
   render::PanelChoice panels;  ///< Panels shown at both sides.
   bool timeline = true;        ///< Under a recording that is played.
+  scene::Orbit orbit;          ///< View to begin with.
 };
 
 /// Options from the command line.

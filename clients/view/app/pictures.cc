@@ -312,6 +312,7 @@ struct Studio {
       background.Drain(show, calibration);
       const std::int64_t now_ns = clock::MonotonicNs();
       scene::Show::Shot shot = show.At(now_ns, false, {options.forces, options.overlay_reference});
+      shot.picture.camera = scene::Orbited(shot.picture.camera, options.look.orbit);
       if (now_ns >= until_ns || background.stop_asked()) return shot;
       clock::SleepUntil(std::min(until_ns, now_ns + SecondsToNanoseconds(kStepS)));
     }

@@ -233,6 +233,7 @@ Result<std::optional<PlaySession>> PlayInWindow(GLFWwindow* window, const Option
   const PlayPicture picture = PictureFor(options, session);
   controls.hud = picture.hud;
   controls.with_timeline = picture.timeline;
+  controls.mouse.SetView(picture.orbit);
   controls.seek = [&](float column) {
     if (!controls.timeline) return;
     const double at_s = render::PositionAt(controls.timeline->groove, session.timeline(), column);
@@ -341,6 +342,7 @@ PlayPicture PictureFor(const Options& options, const PlaySession& session) {
   picture.hud.overlay_reference = options.overlay_reference;
   picture.hud.columns = session.sides().size() == 1;
   picture.hud.panels = options.look.panels;
+  picture.orbit = options.look.orbit;
   picture.timeline = options.look.timeline && !options.subject;
   return picture;
 }

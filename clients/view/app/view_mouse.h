@@ -51,6 +51,8 @@ class ViewMouse {
   /// Turns the view as a drag by that many heights of the picture.
   void Turn(const Eigen::Vector2d& by) { orbit_.Turn(by); }
   void ZoomView(double notches) { orbit_.Scroll(notches); }
+  /// A view to begin with.
+  void SetView(const scene::Orbit& orbit) { orbit_.Set(orbit); }
   /// The first view again.
   void Reset();
 

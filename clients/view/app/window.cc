@@ -193,6 +193,7 @@ Result<std::optional<PlaySession>> ShowLive(GLFWwindow* window, const Options& o
   hud.panels = options.look.panels;
   hud.has_subjects = !options.next_subjects.empty();
   hud.calibrates = calibration->has_value();
+  controls.mouse.SetView(options.look.orbit);
   Listen(window, controls, OnKey);
   return Loop(window, options, **screen, controls, *calibration);
 }

@@ -104,6 +104,7 @@ class MouseOrbit {
   /// Notches of the wheel, positive away from the person: nearer.
   void Scroll(double notches);
   void Reset() { orbit_ = {}; }
+  void Set(const Orbit& orbit) { orbit_ = orbit; }
   const Orbit& orbit() const { return orbit_; }
 
  private:

@@ -64,9 +64,6 @@ constexpr StableRange kStableRanges[] = {
 static_assert(std::size(kStableRanges) == stream::kGaits.size(), "a range for every gait");
 constexpr double kHeightMinM = 0.05;
 constexpr double kHeightMaxM = 0.7;
-/// Forward faster than the first, jumps are lower: down to the second height at 2 m/s.
-constexpr double kHighestUpToMps = 1.0;
-constexpr double kFastHeightMaxM = 0.5;
 
 /// Every gait turns by up to kTurnPerStepMaxDeg a step, a run faster than this by less: linearly,
 /// down to the fastest run's. So does a leap out of a run, faster than jumps are: by as much as
@@ -74,11 +71,6 @@ constexpr double kFastHeightMaxM = 0.5;
 constexpr double kRunFullTurnMps = 4;
 constexpr double kFastestRunMps = 6, kFastestRunTurnDeg = 5;
 constexpr double kFastestJumpMps = 2;
-
-double HeightMax(double speed_mps, double speed_max_mps) {
-  const double share = (speed_mps - kHighestUpToMps) / (speed_max_mps - kHighestUpToMps);
-  return std::lerp(kHeightMaxM, kFastHeightMaxM, std::clamp(share, 0.0, 1.0));
-}
 
 }  // namespace
 
@@ -101,10 +93,7 @@ GaitCommand Limited(const GaitCommand& command) {
     if (range.gait != command.gait) continue;
     GaitCommand limited = command;
     limited.speed_mps = std::clamp(command.speed_mps, 0.0, range.speed_max_mps);
-    const bool jumps = command.gait == Gait::kJump;
-    const double height_max_m =
-        jumps ? HeightMax(limited.speed_mps, range.speed_max_mps) : kHeightMaxM;
-    limited.height_m = std::clamp(command.height_m, kHeightMinM, height_max_m);
+    limited.height_m = std::clamp(command.height_m, kHeightMinM, kHeightMaxM);
     const double turn_max_rad = TurnLimit(command.gait, limited.speed_mps);
     limited.turn_per_step_rad = std::clamp(command.turn_per_step_rad, -turn_max_rad, turn_max_rad);
     limited.cadence_hz = std::max(0.0, command.cadence_hz);

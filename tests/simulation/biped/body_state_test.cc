@@ -86,7 +86,7 @@ TEST(Limits, KeepCommandsInTheStableRange) {
   EXPECT_EQ(Limited({.gait = Gait::kWalk, .speed_mps = 9}).speed_mps, 1.75);
   EXPECT_EQ(Limited({.gait = Gait::kRun, .speed_mps = -1}).speed_mps, 0);
   EXPECT_EQ(Limited({.gait = Gait::kJump, .height_m = 3}).height_m, 0.7);
-  EXPECT_EQ(Limited({.gait = Gait::kJump, .speed_mps = 2, .height_m = 3}).height_m, 0.5);
+  EXPECT_EQ(Limited({.gait = Gait::kJump, .speed_mps = 2, .height_m = 3}).height_m, 0.7);
   EXPECT_EQ(Limited({.gait = Gait::kRun, .speed_mps = NAN}).gait, Gait::kStep);
   EXPECT_EQ(Limited({.gait = Gait::kUnspecified, .speed_mps = 1}).gait, Gait::kStep);
 }
