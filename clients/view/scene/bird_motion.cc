@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kHeadS = 0.2;
 constexpr double kToesS = 0.05;
+constexpr double kFreeFootS = 0.04;      // A foot in flight goes back to where it is.
+constexpr double kLargestCreepM = 0.03;  // Beyond, a foot slides for everybody to see.
 constexpr double kWingsOpenS = 0.18;
 constexpr double kWingsCloseS = 0.25;
 constexpr double kMaxLiftM = 0.10;
@@ -123,6 +125,22 @@ void LookAt(const CharacterPose& pose, double dt_s, BirdMotion& motion) {
       share * (std::clamp(pitch, -kMostGazeRad, kMostGazeRad) - motion.gaze_pitch_rad);
 }
 
+DrawnFoot Planted(const DrawnFoot& before, bool touching, const Eigen::Vector3d& foot_m,
+                  double dt_s) {
+  DrawnFoot foot = before;
+  foot.touches = touching;
+  if (!touching) {
+    foot.shift_m *= 1 - Share(dt_s, kFreeFootS);
+    return foot;
+  }
+  if (!before.touches) foot.planted_m = foot_m + before.shift_m;
+  foot.shift_m = foot.planted_m - foot_m;
+  foot.shift_m.z() = 0;
+  const double creep_m = foot.shift_m.norm();
+  if (creep_m > kLargestCreepM) foot.shift_m *= kLargestCreepM / creep_m;
+  return foot;
+}
+
 /// How far the wings are open to keep a body up that leans so much.
 double Balance(const Eigen::Quaterniond& orientation) {
   const double up = std::clamp((orientation * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0);
@@ -168,8 +186,11 @@ BirdMotion Advance(const BirdMotion& motion, const BirdSkeleton& skeleton,
   for (std::size_t leg = 0; leg < 2; ++leg) {
     const bool touching = Touches(pose, skeleton.feet[leg]);
     airborne = airborne && !touching;
-    touchdown = touchdown || (touching && !next.touches[leg]);
-    next.touches[leg] = touching;
+    touchdown = touchdown || (touching && !next.feet[leg].touches);
+    const auto contact = static_cast<std::size_t>(skeleton.feet[leg]);
+    if (contact < pose.contacts.size()) {
+      next.feet[leg] = Planted(next.feet[leg], touching, pose.contacts[contact].position_m, dt_s);
+    }
     next.toe_spread[leg] += Share(dt_s, kToesS) * ((touching ? 1 : 0) - next.toe_spread[leg]);
   }
   const double wings = airborne ? 1 : Balance(body.orientation);

@@ -19,6 +19,14 @@ struct BirdSkeleton {
 /// Finds the parts by name; those missing keep the usual order.
 BirdSkeleton FindParts(const stream::Skeleton& skeleton);
 
+/// A foot as it is drawn: it stays where it touched for as long as it touches. The one of the
+/// simulation is a ball on the end of the leg, and creeps by some millimetres in a stance.
+struct DrawnFoot {
+  bool touches = false;
+  Eigen::Vector3d planted_m = Eigen::Vector3d::Zero();  ///< W.
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();    ///< From the simulation's, level, W.
+};
+
 /// Cosmetic motion of the bird over the poses of the simulation: a copyable value.
 ///
 /// While it walks the head rests in space and is then thrust ahead, once a step, as pigeons' heads
@@ -43,8 +51,8 @@ struct BirdMotion {
   /// The last pose.
   Eigen::Vector3d body_m = Eigen::Vector3d::Zero(), velocity_mps = Eigen::Vector3d::Zero();
   double body_yaw_rad = 0;
-  std::array<bool, 2> touches{false, false};
-  double blink_s = 1;  ///< Since the last blink began.
+  std::array<DrawnFoot, 2> feet;  ///< Left, right.
+  double blink_s = 1;             ///< Since the last blink began.
 };
 
 /// Moves on by dt_s >= 0. A body that is somewhere else at once starts again there.

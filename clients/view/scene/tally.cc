@@ -93,10 +93,8 @@ void AddToes(const Vector3f& foot, const Vector3f& forward, double spread, float
   parts.AddLimb(foot, on_floor(foot + kBackToeM * back, 0.008f), 0.017f, 0.008f, skin);
 }
 
-void AddLeg(const CharacterPose& pose, int hip_link, int foot_contact, double toe_spread,
+void AddLeg(const stream::LinkPose& hip, const Eigen::Vector3d& foot_m, double toe_spread,
             float floor_m, const Plumage& plumage, PartList& parts) {
-  const stream::LinkPose& hip = pose.links[static_cast<std::size_t>(hip_link)];
-  const Eigen::Vector3d& foot_m = pose.contacts[static_cast<std::size_t>(foot_contact)].position_m;
   const Eigen::Vector3d forward = hip.orientation * Eigen::Vector3d::UnitX();
   const LegPose leg = SolveLeg(hip.position_m, foot_m, forward);
   const Vector3f a = leg.hip_m.cast<float>(), b = leg.ankle_m.cast<float>(),
@@ -144,8 +142,10 @@ void AddBird(const BirdSkeleton& skeleton, const CharacterPose& pose, const Bird
   AddWings(X_WB, motion.wing_spread, plumage, parts);
   AddHead(X_WB, motion, plumage, parts);
   for (std::size_t leg = 0; leg < 2; ++leg) {
-    AddLeg(pose, skeleton.hips[leg], skeleton.feet[leg], motion.toe_spread[leg],
-           static_cast<float>(floor_m), plumage, parts);
+    const auto hip = static_cast<std::size_t>(skeleton.hips[leg]);
+    const auto foot = static_cast<std::size_t>(skeleton.feet[leg]);
+    AddLeg(pose.links[hip], pose.contacts[foot].position_m + motion.feet[leg].shift_m,
+           motion.toe_spread[leg], static_cast<float>(floor_m), plumage, parts);
   }
 }
 

@@ -37,6 +37,30 @@ TEST(BirdMotion, ToesSpreadOnContactAndFoldInFlight) {
   EXPECT_GT(motion.wing_spread, 0.9);
 }
 
+TEST(BirdMotion, AFootIsDrawnWhereItTouchedUntilItLeaves) {
+  const BirdSkeleton skeleton = FindParts(made::Biped());
+  const auto step = [&skeleton](BirdMotion& motion, double foot_m, bool touching) {
+    CharacterPose pose = Turned(0, touching);
+    pose.contacts[0].position_m.x() = foot_m;
+    motion = Advance(motion, skeleton, pose, 0.01);
+    return foot_m + motion.feet[0].shift_m.x();
+  };
+  BirdMotion motion;
+  EXPECT_EQ(step(motion, 0.9, false), 0.9);
+  for (int i = 0; i < 40; ++i) EXPECT_NEAR(step(motion, 1 + 0.0003 * i, true), 1, 1e-9) << i;
+  // In flight it goes back to the true one without a jump.
+  double drawn_m = 1;
+  for (int i = 0; i < 30; ++i) {
+    const double next_m = step(motion, 1.012, false);
+    EXPECT_LT(std::fabs(next_m - drawn_m), 0.004) << i;
+    drawn_m = next_m;
+  }
+  EXPECT_NEAR(drawn_m, 1.012, 1e-4);
+  // A foot that really slides is seen to.
+  step(motion, 1, true);
+  EXPECT_NEAR(step(motion, 1.2, true), 1.17, 1e-9);
+}
+
 /// A walk along x: poses at 100 Hz, a touchdown every step.
 struct Walk {
   static constexpr double kDtS = 0.01, kStepS = 0.375;
