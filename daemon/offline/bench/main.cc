@@ -21,6 +21,7 @@ constexpr Benchmark kBenchmarks[] = {
     {"tls_exchange", footing::bench::TlsExchange},
     {"body_kinematics", footing::bench::BodyKinematics},
     {"pose_frame", footing::bench::PoseFrame},
+    {"biped_step", footing::bench::BipedStep},
     {"dunnett_test", footing::bench::DunnettTest},
 #ifdef FOOTING_HAS_FANN
     {"cascade_training", footing::bench::CascadeTraining},

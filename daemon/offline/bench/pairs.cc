@@ -32,6 +32,7 @@
 #include "common/virtual/motion/motion.h"
 #include "daemon/offline/bench/waiting.h"
 #include "daemon/offline/compute/momentum_cost.h"
+#include "daemon/offline/eval/gait_ground.h"
 #include "daemon/offline/eval/spirals.h"
 #include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/learning/horizontal_com.h"
@@ -128,6 +129,28 @@ Result<Rows> BodyKinematics() {
                kKinematicsPairs, momentum, sines),
       RunPairs("body_centroidal_matrix_us", "us (baseline: the angles' sines and cosines)",
                kKinematicsPairs, centroidal, sines)};
+}
+
+Result<Rows> BipedStep() {
+  constexpr int kStepPairs = 15;
+  const biped::GaitCommand walk{.gait = stream::Gait::kWalk, .speed_mps = 1.2};
+  const biped::GaitCommand run{.gait = stream::Gait::kRun, .speed_mps = 4};
+  Rows rows;
+  const auto measure = [&rows](const std::string& name, const biped::GaitCommand& command,
+                               double push_ns) -> Result<void> {
+    auto cost = eval::StepCost::Create(command, {}, push_ns);
+    if (!cost) return cost.error();
+    rows.push_back(RunPairs(
+        name, "us (baseline: bare mj_step)", kStepPairs, [&] { return cost->EngineUs(); },
+        [&] { return cost->BareUs(); }));
+    return {};
+  };
+  for (const auto& done :
+       {measure("biped_walk_step_us", walk, 0), measure("biped_run_step_us", run, 0),
+        measure("biped_run_after_push_step_us", run, 40)}) {
+    if (!done) return done.error();
+  }
+  return rows;
 }
 
 namespace {

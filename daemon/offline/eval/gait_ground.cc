@@ -115,30 +115,6 @@ constexpr double kStepS = 0.001;
 constexpr int kPairs = 7;
 constexpr int kPublishEvery = 10;
 
-struct Forces {
-  physics::JointEfforts joints;
-  Eigen::Vector3d push_W_n;
-};
-
-std::int64_t TimeEngine(engine::GaitEngine& engine, const engine::EngineState& start,
-                        const engine::EngineInputs& inputs) {
-  engine.Restore(start);
-  const std::int64_t begin_ns = clock::ThreadCpuNs();
-  for (int i = 0; i < kSteps; ++i) {
-    engine.Advance(inputs);
-    if (i % kPublishEvery == 0) engine.Output();
-  }
-  return clock::ThreadCpuNs() - begin_ns;
-}
-
-std::int64_t TimeBare(physics::World& world, const physics::WorldState& start,
-                      const std::vector<Forces>& forces) {
-  world.Restore(start);
-  const std::int64_t begin_ns = clock::ThreadCpuNs();
-  for (const Forces& force : forces) world.StepBare(force.joints, force.push_W_n);
-  return clock::ThreadCpuNs() - begin_ns;
-}
-
 /// How much level ground there is first, m.
 double LevelLength(const biped::GaitCommand& command, const GroundKind& kind) {
   constexpr double kStandsOnM = 2, kBeforePitM = 1;
@@ -150,35 +126,57 @@ double LevelLength(const biped::GaitCommand& command, const GroundKind& kind) {
 
 }  // namespace
 
-Result<double> MeasureStepCostRatio(const biped::GaitCommand& command, const GroundKind& kind) {
+Result<StepCost> StepCost::Create(const biped::GaitCommand& command, const GroundKind& kind,
+                                  double push_ns) {
   const std::optional<std::string> track = MakeShortTrack(kind, LevelLength(command, kind));
   Result<engine::GaitEngine> engine = track ? NewEngineOn(*track) : NewEngine();
   if (!engine) return engine.error();
   Result<physics::World> world = NewWorld(track);
   if (!world) return world.error();
-  Walker walker(*engine);
+  StepCost cost(std::move(*engine), std::move(*world));
+  Walker walker(cost.engine_);
   walker.Command(command);
   for (int i = 0; i < kWarmUpSteps; ++i) walker.Advance();
-
-  const engine::EngineState start = engine->Save();
-  std::vector<Forces> forces;
+  if (push_ns > 0) walker.Push(push_ns, kPi / 2);
+  cost.inputs_ = walker.inputs();
+  cost.start_ = cost.engine_.Save();
   for (int i = 0; i < kSteps; ++i) {
     const engine::EngineOutput& output = walker.Advance();
-    forces.push_back({output.joint_efforts, output.push_W_n});
+    cost.forces_.push_back({output.joint_efforts, output.push_W_n});
   }
-  if (walker.fell()) return 0;  // A character that is put back is no longer MuJoCo's alone.
-  const std::uint64_t expected = engine->Output().state_hash;
+  cost.fell_ = walker.fell();
+  cost.hash_ = cost.engine_.Output().state_hash;
+  return cost;
+}
 
+double StepCost::EngineUs() {
+  engine_.Restore(start_);
+  const std::int64_t begin_ns = clock::ThreadCpuNs();
+  for (int i = 0; i < kSteps; ++i) {
+    engine_.Advance(inputs_);
+    if (i % kPublishEvery == 0) engine_.Output();
+  }
+  return static_cast<double>(clock::ThreadCpuNs() - begin_ns) * 1e-3 / kSteps;
+}
+
+double StepCost::BareUs() {
+  world_.Restore(start_.world);
+  const std::int64_t begin_ns = clock::ThreadCpuNs();
+  for (const Forces& force : forces_) world_.StepBare(force.joints, force.push_W_n);
+  return static_cast<double>(clock::ThreadCpuNs() - begin_ns) * 1e-3 / kSteps;
+}
+
+Result<double> MeasureStepCostRatio(const biped::GaitCommand& command, const GroundKind& kind) {
+  Result<StepCost> cost = StepCost::Create(command, kind);
+  if (!cost) return cost.error();
+  if (cost->fell()) return 0;  // A character that is put back is no longer MuJoCo's alone.
   std::vector<double> ratios;
   for (int pair = 0; pair < kPairs; ++pair) {
-    std::int64_t ours_ns = TimeEngine(*engine, start, walker.inputs());
-    std::int64_t bare_ns = TimeBare(*world, start.world, forces);
-    bare_ns += TimeBare(*world, start.world, forces);
-    if (world->StateHash() != expected) {
-      return Failure("bare mj_step ended in another state than the engine");
-    }
-    ours_ns += TimeEngine(*engine, start, walker.inputs());
-    ratios.push_back(static_cast<double>(ours_ns) / static_cast<double>(bare_ns));
+    double ours_us = cost->EngineUs(), bare_us = cost->BareUs();
+    bare_us += cost->BareUs();
+    if (!cost->agrees()) return Failure("bare mj_step ended in another state than the engine");
+    ours_us += cost->EngineUs();
+    ratios.push_back(ours_us / bare_us);
   }
   return text::Median(std::move(ratios));
 }

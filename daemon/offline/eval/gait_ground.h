@@ -2,11 +2,15 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/base/result.h"
 #include "daemon/offline/eval/gait_trial.h"
 #include "daemon/simulation/biped/body_state.h"
+#include "daemon/simulation/biped/world.h"
+#include "daemon/simulation/engine/engine.h"
+#include "daemon/simulation/engine/state.h"
 
 /// Slopes and steps to walk over: a straight track, and the pilot who leads the character along it.
 namespace footing::eval {
@@ -65,6 +69,37 @@ class GroundPilot {
   int crossed_ = 0;
   bool kick_due_ = false;
   bool settled_ = false;
+};
+
+/// CPU time of a step of the engine, and of a bare mj_step under the same forces, over two seconds
+/// of a gait that runs.
+class StepCost {
+ public:
+  /// With a push from the side in its first step, `push_ns` above 0.
+  static Result<StepCost> Create(const biped::GaitCommand& command, const GroundKind& kind = {},
+                                 double push_ns = 0);
+
+  double EngineUs();
+  double BareUs();
+  bool fell() const { return fell_; }
+  /// After BareUs: its state is the engine's.
+  bool agrees() const { return world_.StateHash() == hash_; }
+
+ private:
+  struct Forces {
+    physics::JointEfforts joints;
+    Eigen::Vector3d push_W_n;
+  };
+  StepCost(engine::GaitEngine engine, physics::World world)
+      : engine_(std::move(engine)), world_(std::move(world)) {}
+
+  engine::GaitEngine engine_;
+  physics::World world_;
+  engine::EngineInputs inputs_;
+  engine::EngineState start_ = engine_.Save();
+  std::vector<Forces> forces_;
+  bool fell_ = false;
+  std::uint64_t hash_ = 0;
 };
 
 /// CPU time of the engine's step over that of bare mj_step, which replays the recorded generalised
