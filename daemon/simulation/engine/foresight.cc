@@ -63,9 +63,13 @@ Result<GainChoices> ReadChoices(std::string_view text, const std::string& origin
   return choices;
 }
 
+Gait GaitOf(const gait::GaitMemory& memory) {
+  return memory.transition.thrusting ? Gait::kRun : memory.gait;
+}
+
 const gait::Gains& GainsInForce::At(const GainTables& tables, const ChosenGains& chosen,
                                     gait::GaitMemory& memory) {
-  const stream::Gait gait = memory.transition.thrusting ? stream::Gait::kRun : memory.gait;
+  const Gait gait = GaitOf(memory);
   const double speed_mps = memory.speed.desired_mps;
   memory.style.there = !tables.style.SetsOf(gait).empty();
   const double style = memory.style.there ? memory.style.share : 0;
@@ -88,17 +92,12 @@ const gait::Gains& GainsInForce::At(const GainTables& tables, const ChosenGains&
 }
 
 bool ChangesPhase(const gait::GaitMemory& before, const gait::GaitMemory& now) {
-  const bool hops = gait::IsHopping(now.gait) || now.transition.thrusting;
-  const bool hopped = gait::IsHopping(before.gait) || before.transition.thrusting;
+  const bool hops = gait::IsHopping(GaitOf(now)), hopped = gait::IsHopping(GaitOf(before));
   if (hops != hopped) return true;
   return hops ? before.running != now.running : before.walking != now.walking;
 }
 
 namespace {
-
-stream::Gait GaitOf(const gait::GaitMemory& memory) {
-  return memory.transition.thrusting ? stream::Gait::kRun : memory.gait;
-}
 
 /// A failure is looked for once in so many steps.
 constexpr std::uint64_t kLooksEvery = 10;

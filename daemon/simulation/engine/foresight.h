@@ -100,6 +100,9 @@ inline constexpr int kMostSteps = 6000;
 /// same state leads to the same choice. Allocates nothing.
 Foresight ChooseAhead(const Outlook& now, const Stage& stage);
 
+/// Gait whose gains hold: running's in a thrust out of walking.
+stream::Gait GaitOf(const gait::GaitMemory& memory);
+
 /// Whether the last step was a touchdown, a lift-off or another change of the machine's phase.
 bool ChangesPhase(const gait::GaitMemory& before, const gait::GaitMemory& now);
 

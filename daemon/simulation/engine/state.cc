@@ -73,6 +73,7 @@ void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) 
   state.interface.StartAgain();
   state.fallen = false;
   state.missed_pit_s = -1e9;
+  state.foresight = {};
   state.inputs.push_steps_left = 0;
   ReadBody();
 }
@@ -178,8 +179,7 @@ void GaitEngine::Parts::StepWorld() {
 }
 
 void GaitEngine::Parts::LookAhead(const gait::GaitMemory& before, bool push_ended) {
-  const stream::Gait gait = state.gait.transition.thrusting ? stream::Gait::kRun : state.gait.gait;
-  const bool any = !tables.choices[stream::IndexOf(gait)].empty();
+  const bool any = !tables.choices[stream::IndexOf(GaitOf(state.gait))].empty();
   if (!any || state.fallen) {
     state.foresight = {};
     return;
