@@ -76,7 +76,8 @@ cli::ServerProgram Program() {
         "Track of the gait engine: straight, 1 to 4 or another built-in name, or a JSON file "
         "(default: endless)"},
        {"--gaits", "gaits",
-        "Controllers of the gaits: best, or paper for those of the gait paper (default: best)"},
+        "Controllers of the gaits: best, plain without style and foresight, or paper for those of "
+        "the gait paper (default: best)"},
        {"--subject", "subject", "Subject file of the pose engine, JSON"},
        {"--mode", "mode", "Reconstruction mode of the pose engine: best or paper (default: best)"},
        {"--metrics", "metrics",

@@ -21,8 +21,8 @@ void Config::Bind(config::Binder& binder) {
               "Let both feet leave the boards in a jump, with the interface boards; the person may "
               "fall beside a board");
   binder.Text("gaits", gaits,
-              "Controllers of the gaits: best, or paper for the state machines and equations as "
-              "the gait paper prints them");
+              "Controllers of the gaits: best, plain without style and foresight, or paper for the "
+              "state machines and equations as the gait paper prints them");
   binder.Text("mapping_table", mapping_table,
               "Mapping table of the interface, JSON file, such as one of footing-study ranges "
               "(empty: the built-in one)");
