@@ -8,9 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
 #include <netinet/in.h>
 #include <unistd.h>
 
@@ -21,6 +18,7 @@
 #include "common/base/units.h"
 #include "common/net/address.h"
 #include "common/net/listener.h"
+#include "common/net/own_address.h"
 #include "common/net/socket.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/timer.h"
@@ -191,22 +189,6 @@ std::string NewUid() {
   return text;
 }
 
-std::vector<std::string> OwnAddresses() {
-  std::vector<std::string> addresses;
-  ifaddrs* all = nullptr;
-  if (::getifaddrs(&all) != 0) return addresses;
-  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
-    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
-    if ((one->ifa_flags & IFF_UP) == 0) continue;
-    std::array<char, INET_ADDRSTRLEN> text{};
-    const auto* address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
-    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr)
-      addresses.emplace_back(text.data());
-  }
-  ::freeifaddrs(all);
-  return addresses;
-}
-
 class Outlets::Implementation : public std::enable_shared_from_this<Outlets::Implementation> {
  public:
   Implementation(asio::io_context& io, OutletsOptions options)
@@ -222,7 +204,7 @@ class Outlets::Implementation : public std::enable_shared_from_this<Outlets::Imp
                         "anybody in that network could read the streams; allow it with "
                         "--insecure-lan, or leave both out for this host alone");
     }
-    const auto own = OwnAddresses();
+    const auto own = transport::OwnAddresses();
     if (!address_.is_loopback() &&
         std::find(own.begin(), own.end(), options_.interface) == own.end())
       return UsageError(given + "this host has no such address; list them with: ip address");
@@ -374,7 +356,7 @@ class Outlets::Implementation : public std::enable_shared_from_this<Outlets::Imp
 
   static bool IsOwn(const asio::ip::address& address) {
     if (address.is_loopback()) return true;
-    const auto own = OwnAddresses();
+    const auto own = transport::OwnAddresses();
     return std::find(own.begin(), own.end(), address.to_string()) != own.end();
   }
 

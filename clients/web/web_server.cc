@@ -28,6 +28,7 @@
 #include "common/net/known_servers.h"
 #include "common/net/tls_context.h"
 #include "common/runtime/clock.h"
+#include "common/net/own_address.h"
 #include "common/runtime/log.h"
 #include "common/runtime/timer.h"
 #include "common/stream/product_ids.h"
@@ -854,9 +855,29 @@ Result<void> LoadIdentity(Desk& desk) {
   return {};
 }
 
-/// As browsers call this host.
+/// As browsers call this host. No browser can open 0.0.0.0, on which it may listen.
 std::string CalledHost(const Desk& desk, const transport::Address& address) {
-  return desk.options.host_names.empty() ? address.host : desk.options.host_names.front();
+  if (!desk.options.host_names.empty()) return desk.options.host_names.front();
+  if (!transport::IsEveryAddress(address.host)) return address.host;
+  const std::string own = transport::AddressForOthers();
+  return own.empty() ? address.host : own;
+}
+
+/// Says by which name QR codes call a host that listens on every address.
+void SayCalledHost(const Desk& desk) {
+  for (const auto& server : desk.servers) {
+    const transport::Address& address = server->address();
+    if (address.kind != transport::Address::Kind::kTls) continue;
+    if (!transport::IsEveryAddress(address.host)) continue;
+    const std::string called = CalledHost(desk, address);
+    if (transport::IsEveryAddress(called)) {
+      log::Warning("no other host can open " + address.Text() +
+                   ", and this one is in no network; name its address with --host-name");
+    } else {
+      log::Info("QR codes for " + address.Text() + " name " + called +
+                "; --host-name names another address");
+    }
+  }
 }
 
 /// Says what is wrong with the certificate, now and every day.
@@ -918,6 +939,7 @@ Result<std::unique_ptr<WebServer>> WebServer::Open(asio::io_context& io, WebOpti
     desk->servers.push_back(std::move(*server));
   }
   if (desk->identity) CheckCertificate(*desk);
+  SayCalledHost(*desk);
   return std::unique_ptr<WebServer>(new WebServer(std::move(desk)));
 }
 

@@ -258,6 +258,7 @@ def check_tls(stage):
     assert "needs a new code" in about["needs_code"] and not about["may_view"], about
     assert over_tls("GET", "/footing.crt")[1].startswith(b"-----BEGIN CERTIFICATE-----"), "for devices that shall trust it"
     assert "the certificate" not in (stage.folder / "web.log").read_text(), "its own one is known by its fingerprint"
+    check_every_address(stage)
     check_certificate(stage)
 
 
@@ -275,6 +276,23 @@ def check_certificate(stage):
         serve(stage, "--identity-file", both, listen="tls:127.0.0.1", name=address)
         said = "the certificate is not for 127.0.0.1" in (stage.folder / f"{address}.log").read_text()
         assert said == warns, (stage.folder / f"{address}.log").read_text()
+def check_every_address(stage):
+    """No browser can open 0.0.0.0: what is printed has an address of this host, or the name that was given."""
+    port, printed = serve(stage, "--identity-file", stage.folder / "identity.pem", listen="tls:0.0.0.0", name="every")
+    host = re.fullmatch(rf"https://([0-9.]+):{port}/phone#\w+", printed["phone"]).group(1)
+    said = (stage.folder / "every.log").read_text()
+    if host == "0.0.0.0":
+        assert "this one is in no network; name its address with --host-name" in said, said
+    else:
+        assert f"name {host}; --host-name names another address" in said, said
+        socket.create_connection((host, port), timeout=5).close()
+    stage.stop("every")
+    port, printed = serve(stage, "--identity-file", stage.folder / "identity.pem", "--host-name", "lab.example",
+                          listen="tls:0.0.0.0", name="named")
+    assert printed["phone"].startswith(f"https://lab.example:{port}/phone#"), printed
+    stage.stop("named")
+
+
 
 
 def check_roles(stage):
