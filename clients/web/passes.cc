@@ -1,13 +1,37 @@
 #include "clients/web/passes.h"
 
 #include <algorithm>
+#include <array>
+#include <sstream>
 
+#include <openssl/sha.h>
 #include <boost/asio/ip/address.hpp>
 
 #include "common/base/units.h"
 #include "common/net/access.h"
 
 namespace footing::web {
+namespace {
+
+constexpr std::string_view kHexDigits = "0123456789abcdef";
+
+std::string HashOf(std::string_view pass) {
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
+  SHA256(reinterpret_cast<const unsigned char*>(pass.data()), pass.size(), digest.data());
+  std::string hash;
+  for (const unsigned char byte : digest) {
+    hash += kHexDigits[byte >> 4];
+    hash += kHexDigits[byte & 15];
+  }
+  return hash;
+}
+
+bool IsHash(const std::string& text) {
+  return text.size() == 2 * SHA256_DIGEST_LENGTH &&
+         text.find_first_not_of(kHexDigits) == std::string::npos;
+}
+
+}  // namespace
 
 std::string Passes::NewCode(Right right, std::int64_t now_ns) {
   codes_.push_back({random_(), right, now_ns + SecondsToNanoseconds(kCodeLastsS)});
@@ -22,18 +46,49 @@ std::optional<std::string> Passes::Redeem(std::string_view code, std::int64_t no
     if (transport::IsSameSecret(one->secret, code) && now_ns < one->until_ns) found = one;
   }
   if (found == codes_.end()) return std::nullopt;
-  passes_.push_back({random_(), found->right, now_ns + SecondsToNanoseconds(kPassLastsS)});
+  std::string pass = random_();
+  passes_.push_back({HashOf(pass), found->right, now_ns + SecondsToNanoseconds(kPassLastsS)});
   codes_.erase(found);
   if (passes_.size() > kMostPasses) passes_.pop_front();
-  return passes_.back().secret;
+  return pass;
 }
 
 Right Passes::RightOf(std::string_view pass, std::int64_t now_ns) const {
+  const std::string hash = HashOf(pass);
   Right right = Right::kNone;
   for (const Entry& one : passes_) {
-    if (transport::IsSameSecret(one.secret, pass) && now_ns < one.until_ns) right = one.right;
+    if (transport::IsSameSecret(one.secret, hash) && now_ns < one.until_ns) right = one.right;
   }
   return right;
+}
+
+std::string Passes::Text(std::int64_t now_ns, std::int64_t wall_ns) const {
+  std::string text;
+  for (const Entry& one : passes_) {
+    if (now_ns >= one.until_ns) continue;
+    const std::int64_t until_s = (wall_ns + one.until_ns - now_ns) / kNanosecondsPerSecond;
+    text += one.secret + " " + std::to_string(static_cast<int>(one.right)) + " " +
+            std::to_string(until_s) + "\n";
+  }
+  return text;
+}
+
+void Passes::Take(std::string_view text, std::int64_t now_ns, std::int64_t wall_ns) {
+  std::istringstream lines{std::string(text)};
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string hash;
+    int right = 0;
+    std::int64_t until_s = 0;
+    if (!(words >> hash >> right >> until_s) || !IsHash(hash)) continue;
+    if (right < static_cast<int>(Right::kView) || right > static_cast<int>(Right::kDevices))
+      continue;
+    // The wall clock may have been set meanwhile: no pass lasts longer than a new one.
+    const double left_s = static_cast<double>(until_s) - NanosecondsToSeconds(wall_ns);
+    if (!(left_s > 0) || passes_.size() >= kMostPasses) continue;
+    passes_.push_back({hash, static_cast<Right>(right),
+                       now_ns + SecondsToNanoseconds(std::min(left_s, kPassLastsS))});
+  }
 }
 
 std::string_view CookieIn(std::string_view header, std::string_view name) {

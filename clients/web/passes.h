@@ -15,8 +15,8 @@ namespace footing::web {
 enum class Right { kNone, kView, kAnswer, kDevices };
 
 /// One-time codes, which a QR code shows, and the passes that browsers get for them, which they
-/// keep in a cookie. A plain value; instants are of CLOCK_MONOTONIC. Both are forgotten when the
-/// program ends.
+/// keep in a cookie. A plain value; instants are of CLOCK_MONOTONIC. Of passes it knows no more
+/// than their SHA-256, so that who reads what is kept of them for the next start gets none.
 class Passes {
  public:
   static constexpr double kCodeLastsS = 600;
@@ -34,9 +34,15 @@ class Passes {
   /// The right of a pass; kNone where there is none such.
   Right RightOf(std::string_view pass, std::int64_t now_ns) const;
 
+  /// The passes for the next start, a line each: SHA-256, right, and the second of the wall clock
+  /// until which it lasts.
+  std::string Text(std::int64_t now_ns, std::int64_t wall_ns) const;
+  /// Takes such lines in; others are ignored, and so are those that are over.
+  void Take(std::string_view text, std::int64_t now_ns, std::int64_t wall_ns);
+
  private:
   struct Entry {
-    std::string secret;
+    std::string secret;  ///< A code, or the SHA-256 of a pass.
     Right right = Right::kNone;
     std::int64_t until_ns = 0;
   };

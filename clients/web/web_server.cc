@@ -9,6 +9,8 @@
 #include <span>
 #include <utility>
 
+#include <sys/stat.h>
+
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -26,9 +28,10 @@
 #include "common/net/framing.h"
 #include "common/net/http_server.h"
 #include "common/net/known_servers.h"
+#include "common/net/own_address.h"
 #include "common/net/tls_context.h"
 #include "common/runtime/clock.h"
-#include "common/net/own_address.h"
+#include "common/runtime/files.h"
 #include "common/runtime/log.h"
 #include "common/runtime/timer.h"
 #include "common/stream/product_ids.h"
@@ -69,6 +72,10 @@ constexpr const char* kWebcamPermissions = "camera=(self)";
 constexpr std::string_view kModelPrefix = "/pose/";
 constexpr std::int64_t kSkeletonsLostNs = 1'000'000'000;
 
+/// Beside the identity of tls:, keeps the passes.
+constexpr const char* kPassesFile = "web_passes";
+constexpr std::size_t kMostPassesBytes = 64 << 10;
+
 /// Letters and digits that nobody mistakes for each other, 100 bits.
 std::string Secret() {
   constexpr std::string_view kLetters = "abcdefghijkmnpqrstuvwxyz23456789";
@@ -92,6 +99,7 @@ struct WebServer::Desk {
   WebOptions options;
   WebCounts counts;
   Passes passes{Secret};
+  std::string passes_file;               ///< Keeps them for the next start; empty: nothing does.
   const std::string session = Secret();  ///< Name of this start of the program, for Foxglove.
   std::string refused_foxglove;          ///< Why the last one was, which is logged once.
   std::map<std::string, std::shared_ptr<Mailbox>> mailboxes;  ///< By the phone's pass.
@@ -105,6 +113,29 @@ struct WebServer::Desk {
 namespace {
 
 using Desk = WebServer::Desk;
+
+/// Takes the passes of the last start, so that its pages go on without a new code.
+void FindPasses(Desk& desk) {
+  const auto file = config::RegularFile::Open(desk.passes_file);
+  if (!file) return;  // The first start.
+  if (file->Allows(S_IRWXG | S_IRWXO)) {
+    log::Warning(desk.passes_file + ": others may read or change it, so its passes do not count; " +
+                 "chmod 600 it, or delete it");
+    return;
+  }
+  const auto text = file->Read(kMostPassesBytes);
+  if (text) desk.passes.Take(*text, clock::MonotonicNs(), clock::WallNs());
+}
+
+void KeepPasses(Desk& desk) {
+  if (desk.passes_file.empty()) return;
+  const auto kept = config::ReplaceFile(desk.passes_file,
+                                        desk.passes.Text(clock::MonotonicNs(), clock::WallNs()));
+  if (kept) return;
+  log::Warning("cannot keep the pages' passes: " + desk.passes_file + ": " + kept.error().message +
+               "; after a restart each page needs a new code");
+  desk.passes_file.clear();
+}
 
 /// A phone's message, checked: it attaches an inertial sensor and sends its reports, and nothing
 /// else. The first one of a connection must attach.
@@ -762,6 +793,7 @@ class Reception {
                     "this code was used or is too old: scan the QR code again\n");
     }
     ++desk_->counts.codes_used;
+    KeepPasses(*desk_);
     return {http::status::no_content,
             "",
             "",
@@ -852,6 +884,7 @@ Result<void> LoadIdentity(Desk& desk) {
   auto identity = tls::Identity::LoadOrMake(file, "Footing");
   if (!identity) return identity.error();
   desk.identity = std::move(identity).value();
+  desk.passes_file = std::filesystem::path(file).replace_filename(kPassesFile);
   return {};
 }
 
@@ -938,7 +971,10 @@ Result<std::unique_ptr<WebServer>> WebServer::Open(asio::io_context& io, WebOpti
     if (!server) return server.error();
     desk->servers.push_back(std::move(*server));
   }
-  if (desk->identity) CheckCertificate(*desk);
+  if (desk->identity) {
+    CheckCertificate(*desk);
+    FindPasses(*desk);
+  }
   SayCalledHost(*desk);
   return std::unique_ptr<WebServer>(new WebServer(std::move(desk)));
 }

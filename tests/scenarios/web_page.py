@@ -258,6 +258,19 @@ def check_tls(stage):
     assert "needs a new code" in about["needs_code"] and not about["may_view"], about
     assert over_tls("GET", "/footing.crt")[1].startswith(b"-----BEGIN CERTIFICATE-----"), "for devices that shall trust it"
     assert "the certificate" not in (stage.folder / "web.log").read_text(), "its own one is known by its fingerprint"
+    stage.stop("web")
+    kept = stage.folder / "web_passes"
+    assert kept.stat().st_mode & 0o777 == 0o600 and cookie.split("=")[1] not in kept.read_text(), kept.read_text()
+    port, _ = serve(stage, "--identity-file", stage.folder / "identity.pem", listen="tls:127.0.0.1")
+    page = WebSocket(port, "/session/0", cookie=cookie, trusting=trusting)
+    assert page.status == 101, "its pass outlives a restart"
+    page.close()
+    stage.stop("web")
+    kept.chmod(0o644)
+    port, _ = serve(stage, "--identity-file", stage.folder / "identity.pem", listen="tls:127.0.0.1")
+    assert WebSocket(port, "/session/0", cookie=cookie, trusting=trusting).status == 403
+    assert "chmod 600" in (stage.folder / "web.log").read_text()
+    kept.unlink()
     check_every_address(stage)
     check_certificate(stage)
 

@@ -41,6 +41,37 @@ TEST(Passes, TheOldestCodeGoesWhenThereAreTooMany) {
   EXPECT_TRUE(passes.Redeem(last, 1));
 }
 
+TEST(Passes, ArePickedUpAfterARestart) {
+  constexpr std::int64_t kHour = 3'600'000'000'000, kWall = 500'000 * kHour;
+  Passes before(Numbered());
+  const std::string view = *before.Redeem(before.NewCode(Right::kView, 0), 0);
+  const std::string phone = *before.Redeem(before.NewCode(Right::kDevices, kHour), kHour);
+  const std::string text = before.Text(2 * kHour, kWall);
+  EXPECT_EQ(text.find(view), std::string::npos) << "a reader of the file cannot enter by it";
+  // The machine was started as well: its own clock begins again.
+  Passes after(Numbered());
+  after.Take("no pass\n" + text + std::string(64, '0') + " 9 99999999999\n", 7, kWall + kHour);
+  EXPECT_EQ(after.RightOf(view, 7), Right::kView);
+  EXPECT_EQ(after.RightOf(phone, 7), Right::kDevices);
+  EXPECT_EQ(after.RightOf("", 7), Right::kNone);
+  EXPECT_EQ(after.RightOf(view, 9 * kHour + 8), Right::kNone) << "12 hours in all";
+  EXPECT_EQ(after.RightOf(phone, 10 * kHour + 8), Right::kNone);
+  EXPECT_EQ(after.RightOf(phone, 9 * kHour + 8), Right::kDevices);
+}
+
+TEST(Passes, AClockThatWasSetBackMakesNoPassLonger) {
+  constexpr std::int64_t kHour = 3'600'000'000'000, kWall = 500'000 * kHour;
+  Passes before(Numbered());
+  const std::string pass = *before.Redeem(before.NewCode(Right::kView, 0), 0);
+  Passes after(Numbered());
+  after.Take(before.Text(0, kWall), 0, kWall - 1000 * kHour);
+  EXPECT_EQ(after.RightOf(pass, 11 * kHour), Right::kView);
+  EXPECT_EQ(after.RightOf(pass, 13 * kHour), Right::kNone);
+  Passes late(Numbered());
+  late.Take(before.Text(0, kWall), 0, kWall + 13 * kHour);
+  EXPECT_EQ(late.RightOf(pass, 0), Right::kNone);
+}
+
 TEST(Passes, FindsItsCookieAmongOthers) {
   EXPECT_EQ(CookieIn("a=1; footing_pass=xyz; b=2", "footing_pass"), "xyz");
   EXPECT_EQ(CookieIn("footing_pass=xyz", "footing_pass"), "xyz");
