@@ -13,6 +13,8 @@ import tempfile
 import time
 
 PATIENCE_S = 60
+# Name, width, height, dark theme.
+SIZES = (("desktop", 1280, 720, False), ("tablet", 820, 1180, False), ("phone", 390, 844, True))
 
 
 def is_there():
@@ -48,6 +50,17 @@ class Page:
         """The size of the window, and the theme."""
         self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 700)
         self.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+
+    def show_each_size(self, pictures, name, ready="true"):
+        """At each size the page fits into the window; its pictures, where they have a folder."""
+        for size, width, height, dark in SIZES:
+            self.show(width, height, dark)
+            self.wait_for(f"window.innerWidth === {width} && {ready}")
+            overflow = self.evaluate("document.documentElement.scrollWidth - window.innerWidth")
+            assert overflow <= 0, f"{name}, {size}: {overflow} pixels beyond the right edge"
+            if pictures:
+                time.sleep(0.5)
+                self.screenshot(pathlib.Path(pictures) / f"{name}-{size}.png")
 
     def screenshot(self, path):
         shot = self.send("Page.captureScreenshot", format="png")

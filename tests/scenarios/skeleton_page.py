@@ -182,12 +182,7 @@ def check_synthetic(stage, pictures):
         page.wait_for("window.footing().sent > 20")
         samples = [sample for tick in harness.read_ticks(stage.sensor, 10, ("hands",))
                    for sample in tick.get("hands", {}).get("samples", [])]
-        for name, width, height, dark in (("tablet", 820, 1180, False), ("phone", 390, 844, True), ("desktop", 1280, 720, False)):
-            page.show(width, height, dark)
-            page.wait_for(f"window.innerWidth === {width}")
-            assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), name
-            if pictures:
-                page.screenshot(pathlib.Path(pictures) / f"webcam-{name}.png")
+        page.show_each_size(pictures, "webcam")
         page.evaluate("document.getElementById('stop').click()")
         page.wait_for("!document.getElementById('camera').hidden && document.activeElement.id === 'camera'")
         report = statistics(stage)
@@ -245,11 +240,11 @@ def check_person(stage):
 def main():
     part = sys.argv[2]
     if part == "figure" and not shutil.which("node"):
-        skip("node is missing")
+        web_page.skip("node is missing")
     if part not in ("http", "figure") and not shutil.which("chromium"):
-        skip("chromium is missing; scripts/dependencies-web.txt lists what this test needs")
+        web_page.skip("chromium is missing; scripts/dependencies-web.txt lists what this test needs")
     if part in ("model", "person") and not (PACKAGE / "pose.js").is_file():
-        skip("@mediapipe/pose is missing; run scripts/fetch-pose-model")
+        web_page.skip("@mediapipe/pose is missing; run scripts/fetch-pose-model")
     pictures = sys.argv[3] if len(sys.argv) > 3 else None
     checks = {"http": check_http, "figure": check_figure, "synthetic": lambda stage: check_synthetic(stage, pictures),
               "model": check_model, "person": check_person}

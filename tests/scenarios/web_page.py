@@ -275,20 +275,6 @@ def check_tls(stage):
     check_certificate(stage)
 
 
-def check_certificate(stage):
-    """A certificate that is not for this host is a sentence in the log; one that is for it is none."""
-    if not shutil.which("openssl"):
-        return
-    for address, warns in (("192.0.2.5", True), ("127.0.0.1", False)):
-        key, certificate, both = (stage.folder / f"{address}.{name}" for name in ("key", "crt", "pem"))
-        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "800",
-                        "-subj", "/CN=Footing", "-addext", f"subjectAltName=IP:{address}", "-keyout", key, "-out", certificate],
-                       check=True, stderr=subprocess.DEVNULL)
-        both.touch(0o600)
-        both.write_bytes(key.read_bytes() + certificate.read_bytes())
-        serve(stage, "--identity-file", both, listen="tls:127.0.0.1", name=address)
-        said = "the certificate is not for 127.0.0.1" in (stage.folder / f"{address}.log").read_text()
-        assert said == warns, (stage.folder / f"{address}.log").read_text()
 def check_every_address(stage):
     """No browser can open 0.0.0.0: what is printed has an address of this host, or the name that was given."""
     port, printed = serve(stage, "--identity-file", stage.folder / "identity.pem", listen="tls:0.0.0.0", name="every")
@@ -306,6 +292,20 @@ def check_every_address(stage):
     stage.stop("named")
 
 
+def check_certificate(stage):
+    """A certificate that is not for this host is a sentence in the log; one that is for it is none."""
+    if not shutil.which("openssl"):
+        return
+    for address, warns in (("192.0.2.5", True), ("127.0.0.1", False)):
+        key, certificate, both = (stage.folder / f"{address}.{name}" for name in ("key", "crt", "pem"))
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "800",
+                        "-subj", "/CN=Footing", "-addext", f"subjectAltName=IP:{address}", "-keyout", key, "-out", certificate],
+                       check=True, stderr=subprocess.DEVNULL)
+        both.touch(0o600)
+        both.write_bytes(key.read_bytes() + certificate.read_bytes())
+        serve(stage, "--identity-file", both, listen="tls:127.0.0.1", name=address)
+        said = "the certificate is not for 127.0.0.1" in (stage.folder / f"{address}.log").read_text()
+        assert said == warns, (stage.folder / f"{address}.log").read_text()
 
 
 def check_roles(stage):
@@ -451,14 +451,9 @@ def check_live(stage, pictures):
         page.wait_for("/step|walk|run|jump/.test(document.getElementById('gait').textContent)")
         page.wait_for("!document.getElementById('simulated').hidden")
         check_picture(page)
-        for name, width, height, dark in (("desktop", 1280, 720, False), ("tablet", 820, 1180, False), ("phone", 390, 844, True)):
-            page.show(width, height, dark)
-            page.wait_for(f"window.innerWidth === {width}")
-            overflow = page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
-            assert overflow <= 0, f"{name}: {overflow} pixels beyond the right edge"
-            time.sleep(1)
-            if pictures:
-                page.screenshot(pathlib.Path(pictures) / f"web-{name}.png")
+        if pictures:
+            page.wait_for("/walk|run/.test(document.getElementById('gait').textContent)")
+        page.show_each_size(pictures, "web")
         check_controls(page)
         drawn, began = page.evaluate("window.footing().drawn"), time.monotonic()
         time.sleep(3)
@@ -502,9 +497,11 @@ def check_controls(page):
 class Phone:
     """A phone's page whose sensors a test moves. A hand swings the phone about its left-right axis."""
 
-    def __init__(self, chromium, address, role):
+    def __init__(self, chromium, address, role, pictures=None):
         self.page = chromium.open(address, 390, 844)
         self.page.wait_for("document.getElementById('start').onclick !== null")
+        self.page.show_each_size(pictures, "controller-start")
+        self.page.show(390, 844)
         for kind in ("accelerometer", "linear-acceleration", "gyroscope", "relative-orientation"):
             self.page.send("Emulation.setSensorOverrideEnabled", enabled=True, type=kind,
                            metadata={"available": True, "minimumFrequency": 1, "maximumFrequency": 60})
@@ -527,7 +524,7 @@ def check_phones(stage, pictures):
     with browser.Browser("--ignore-certificate-errors") as chromium:
         # Each of the two has a browser's storage of its own, since another port is another origin. The second one is
         # served over TLS, as real phones are, and sends requests, as iOS may have to.
-        left = Phone(chromium, printed["phone"].replace("/phone", "/phone?simulated"), 1)
+        left = Phone(chromium, printed["phone"].replace("/phone", "/phone?simulated"), 1, pictures)
         right = Phone(chromium, second[1]["phone"].replace("/phone", "/phone?simulated&post"), 2)
         began = time.monotonic()
         devices = stage.wait_for_devices()
@@ -537,8 +534,7 @@ def check_phones(stage, pictures):
         walking = swing_until_walking(stage, left, right)
         print(f"walking {walking - began:.1f} s after two taps; samples lost: "
               f"{[phone.page.evaluate('window.footing().lost') for phone in (left, right)]}")
-        if pictures:
-            right.page.screenshot(pathlib.Path(pictures) / "web-controller.png")
+        right.page.show_each_size(pictures, "controller")
         left.page.evaluate("document.getElementById('stop').click()", gesture=True)
         stage.wait_for(lambda: "lost" in [one["state"] for one in devices_of(stage)], "a stop that detaches the phone")
         assert not left.page.errors + right.page.errors

@@ -85,7 +85,7 @@ export function showNumbers(list, character) {
     ['turn', `${degrees(gait.commanded_turn_rad)}° a step`],
     ['distance', `${gait.distance_m.toFixed(1)} m`],
     ['falls', String(gait.falls)],
-    ['state', gait.phase.replaceAll('_', ' ')],
+    ['part of the step', gait.phase.replaceAll('_', ' ')],
     ['frequency', user?.frequency_valid ? `${user.frequency_hz.toFixed(2)} Hz` : undefined],
     ['phase', user?.phase_valid ? `${degrees(user.phase_rad)}°` : undefined],
   ] : []);

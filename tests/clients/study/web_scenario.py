@@ -90,12 +90,7 @@ def wait_for_item(page, item):
 
 
 def take_pictures(page, pictures, name, ready="true"):
-    for size, width, height, dark in (("tablet", 820, 1180, False), ("phone", 390, 844, True), ("desktop", 1280, 720, False)):
-        page.show(width, height, dark)
-        page.wait_for(f"window.innerWidth === {width} && {ready}")
-        assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), (name, size)
-        if pictures:
-            page.screenshot(pathlib.Path(pictures) / f"{name}-{size}.png")
+    page.show_each_size(pictures, name, ready)
     page.show(820, 1180)
 
 
