@@ -87,11 +87,10 @@ class Server::Implementation {
     const std::uint64_t left_out = shared_.publication.channels_left_out();
     const SharedTick tick = shared_.publication.Publish(number, channels);
     if (shared_.publication.channels_left_out() != left_out) SayLeftOut();
-    // Whoever floods the server gets its ticks behind all others.
     const std::int64_t now_ns = shared_.NowNs();
-    for (const bool slowed : {false, true}) {
+    for (int place = 0; place <= Session::kLastPlace; ++place) {
       for (const auto& session : sessions_.all()) {
-        if (session->SlowedLately(now_ns) == slowed) session->Offer(tick);
+        if (session->PlaceInLine(now_ns) == place) session->Offer(tick);
       }
     }
     shared_.publication.Keep(tick);

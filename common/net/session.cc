@@ -452,6 +452,11 @@ bool Session::SlowedLately(std::int64_t now_ns) const {
   return until_ns != 0 && now_ns - until_ns < kNanosecondsPerSecond;
 }
 
+int Session::PlaceInLine(std::int64_t now_ns) const {
+  if (SlowedLately(now_ns)) return kLastPlace;
+  return ticks_.subscription().max_hz > 0 ? 1 : 0;
+}
+
 void Session::Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count) {
   if (!welcomed() || !connection_.open()) return;
   v1::Envelope message;

@@ -218,8 +218,10 @@ class Session : public std::enable_shared_from_this<Session> {
   void GiveWay(const std::string& message);
   /// It was refused, and lingers until the client has seen why.
   bool refused() const { return phase_ == Phase::kRefused; }
-  /// It waits for its budget, or did within the last second.
-  bool SlowedLately(std::int64_t now_ns) const;
+  /// When its turn comes at each tick, from 0: whoever takes every tick works with them, and comes
+  /// before whoever takes fewer, such as a picture; who floods the server comes last.
+  static constexpr int kLastPlace = 2;
+  int PlaceInLine(std::int64_t now_ns) const;
   bool welcomed() const { return phase_ == Phase::kWelcomed || phase_ == Phase::kSubscribed; }
   /// It is welcomed, and nobody has ended it yet.
   bool live() const { return welcomed() && connection_.open(); }
@@ -227,6 +229,8 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   enum class Phase { kHello, kGuessed, kWelcomed, kSubscribed, kRefused };
 
+  /// It waits for its budget, or did within the last second.
+  bool SlowedLately(std::int64_t now_ns) const;
   void OnFrame(std::string_view payload);
   void OnSlowed(double wait_s);
   void OnHello(const v1::Hello& hello);

@@ -110,6 +110,27 @@ TEST_F(ServerStreamTest, DecimationIsNoGapAndKeepsRetainedValues) {
   EXPECT_EQ(carried->tick().status().devices(0).serial(), "between");
 }
 
+TEST_F(ServerStreamTest, WhoTakesEveryTickGetsItBeforeWhoTakesFewer) {
+  StartServer();
+  v1::Envelope fewer = Subscribe();
+  fewer.mutable_subscribe()->set_max_hz(50);
+  const auto picture = Subscribed(fewer), worker = Subscribed(Subscribe());
+  for (std::size_t i = 0; i < 20; ++i) {
+    PublishMotion();
+    const std::size_t shown = picture->Sequences().size();
+    std::optional<bool> first;
+    ASSERT_TRUE(RunUntil([&] {
+      if (!first && worker->Sequences().size() == i + 1) {
+        first = picture->Sequences().size() == shown;
+      }
+      return first.has_value();
+    }));
+    EXPECT_TRUE(*first) << "the picture came first, and waits all the same";
+    Settle();
+  }
+  EXPECT_NEAR(static_cast<double>(picture->Sequences().size()), 10, 1);
+}
+
 TEST_F(ServerStreamTest, ASlowReaderWithDropOldestGetsTheNewestAndAGapForTheRest) {
   StartServer();
   const auto slow = Stalled(v1::QUEUE_POLICY_DROP_OLDEST, 10);
