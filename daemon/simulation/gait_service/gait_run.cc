@@ -204,7 +204,7 @@ v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
   return events;
 }
 
-void GaitLine::AddChanges(const Frame& frame, bool switched,
+void GaitLine::AddChanges(const Frame& frame, bool switched, std::int64_t now_ns,
                           std::vector<transport::ChannelBytes>& channels) {
   if (switched || frame.added_count > 0) {
     channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(trials_.track())));
@@ -212,7 +212,7 @@ void GaitLine::AddChanges(const Frame& frame, bool switched,
   if (std::exchange(config_changed_, false)) {
     channels.push_back(serving::Bytes(serving::kConfig, effective_.Message()));
   }
-  if (const auto study = study_.TakeChange()) {
+  if (const auto study = study_.TakeChange(now_ns)) {
     channels.push_back(serving::Bytes(serving::kStudy, wire::ToProto(*study)));
   }
   if (const auto game = game_.TakeChange()) {
@@ -228,7 +228,7 @@ std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::
   for (int i = 0; i < frame.added_count; ++i) {
     terrain::Add(frame.added[static_cast<std::size_t>(i)], trials_.track());
   }
-  AddChanges(frame, switched, channels);
+  AddChanges(frame, switched, now_ns, channels);
   v1::CharacterFrame characters = ToCharacterFrame(frame, world_, input_.rig());
   trials_.Describe(frame, *characters.mutable_characters(0));
   characters.set_lease_holder(lease_.holder());

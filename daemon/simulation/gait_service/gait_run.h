@@ -86,7 +86,7 @@ class GaitLine {
   /// Stops the trial of a game whose leader has gone: the runner would run off its track's end.
   void EndLeftGame();
   /// Adds the changes of the retained channels since the last frame.
-  void AddChanges(const Frame& frame, bool switched,
+  void AddChanges(const Frame& frame, bool switched, std::int64_t now_ns,
                   std::vector<transport::ChannelBytes>& channels);
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
 

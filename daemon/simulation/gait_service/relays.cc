@@ -1,8 +1,10 @@
 #include "daemon/simulation/gait_service/relays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "common/base/units.h"
 #include "common/wire/wire.h"
 #include "daemon/simulation/serving/messages.h"
 
@@ -12,6 +14,9 @@ namespace {
 using serving::Answer;
 
 constexpr std::size_t kMostTextBytes = 400;
+constexpr std::int64_t kCountEveryNs = 1'000'000'000;
+/// Rest of a countdown that has ended: 0 would be none at all, and screens show its end.
+constexpr double kEndedS = 0.001;
 
 }  // namespace
 
@@ -40,9 +45,17 @@ void StudyRelay::OnSessionEnd(const transport::SessionInfo& who) {
   changed_ = true;
 }
 
-std::optional<stream::StudyState> StudyRelay::TakeChange() {
-  if (!std::exchange(changed_, false)) return std::nullopt;
-  return study_;
+std::optional<stream::StudyState> StudyRelay::TakeChange(std::int64_t now_ns) {
+  if (std::exchange(changed_, false)) {
+    begun_ns_ = sent_ns_ = now_ns;
+    return study_;
+  }
+  const bool counts = NanosecondsToSeconds(sent_ns_ - begun_ns_) < study_.left_s;
+  if (!counts || now_ns - sent_ns_ < kCountEveryNs) return std::nullopt;
+  sent_ns_ = now_ns;
+  stream::StudyState now = study_;
+  now.left_s = std::max(study_.left_s - NanosecondsToSeconds(now_ns - begun_ns_), kEndedS);
+  return now;
 }
 
 v1::CommandResult GameRelay::OnSetGame(const transport::SessionInfo& who,

@@ -12,20 +12,23 @@
 namespace footing::gait_service {
 
 /// Hands on where a study's session stands, from the client that leads it to everybody's screen. It
-/// is forgotten when that client's session ends.
+/// is forgotten when that client's session ends. A countdown is sent again each second with what is
+/// left of it, since a screen that joins gets what was sent last.
 class StudyRelay {
  public:
   /// SetStudy. Refused, with the reason, where a text is too long or a number not finite.
   v1::CommandResult OnSetStudy(const transport::SessionInfo& who, const v1::SetStudy& message);
   void OnSessionEnd(const transport::SessionInfo& who);
 
-  /// The state to publish, once after each change.
-  std::optional<stream::StudyState> TakeChange();
+  /// The state to publish: after each change, and as a countdown goes on.
+  std::optional<stream::StudyState> TakeChange(std::int64_t now_ns);
 
  private:
   stream::StudyState study_;
   std::uint64_t session_ = 0;  ///< That sent it; 0: none.
   bool changed_ = false;
+  std::int64_t begun_ns_ = 0;  ///< When the state was published first, and
+  std::int64_t sent_ns_ = 0;   ///< when last.
 };
 
 /// Hands the terrain game's state on from the client that leads it to everybody, and keeps all

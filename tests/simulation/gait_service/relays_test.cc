@@ -1,4 +1,6 @@
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -168,14 +170,37 @@ v1::SetStudy State(const std::string& participant) {
 
 TEST(StudyRelay, HandsTheStateOnOnceAndForgetsItWithItsSession) {
   StudyRelay relay;
-  EXPECT_FALSE(relay.TakeChange());
+  EXPECT_FALSE(relay.TakeChange(0));
   ASSERT_TRUE(relay.OnSetStudy(kStudyClient, State("P01")).ok());
-  EXPECT_EQ(relay.TakeChange()->participant, "P01");
-  EXPECT_FALSE(relay.TakeChange());
+  EXPECT_EQ(relay.TakeChange(0)->participant, "P01");
+  EXPECT_FALSE(relay.TakeChange(0));
   relay.OnSessionEnd(kOtherClient);
-  EXPECT_FALSE(relay.TakeChange());
+  EXPECT_FALSE(relay.TakeChange(0));
   relay.OnSessionEnd(kStudyClient);
-  EXPECT_EQ(relay.TakeChange()->participant, "");
+  EXPECT_EQ(relay.TakeChange(0)->participant, "");
+}
+
+TEST(StudyRelay, SendsACountdownAgainAsItGoesOn) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  StudyRelay relay;
+  v1::SetStudy message = State("P01");
+  message.mutable_study()->set_left_s(2.5);
+  ASSERT_TRUE(relay.OnSetStudy(kStudyClient, message).ok());
+  EXPECT_EQ(relay.TakeChange(10 * kSecond)->left_s, 2.5);
+  std::vector<double> left_s;
+  for (std::int64_t ms = 10; ms < 10'000; ms += 10) {
+    const auto again = relay.TakeChange(10 * kSecond + ms * 1'000'000);
+    if (again) left_s.push_back(again->left_s);
+  }
+  ASSERT_EQ(left_s.size(), 3u) << "no more once it has ended";
+  EXPECT_NEAR(left_s[0], 1.5, 1e-9);
+  EXPECT_NEAR(left_s[1], 0.5, 1e-9);
+  EXPECT_GT(left_s[2], 0) << "0 would say that nothing was counted";
+  EXPECT_LT(left_s[2], 0.01);
+  message.mutable_study()->set_left_s(0);
+  ASSERT_TRUE(relay.OnSetStudy(kStudyClient, message).ok());
+  EXPECT_TRUE(relay.TakeChange(30 * kSecond));
+  EXPECT_FALSE(relay.TakeChange(40 * kSecond));
 }
 
 TEST(StudyRelay, RefusesWhatNoScreenCanShow) {
@@ -185,7 +210,7 @@ TEST(StudyRelay, RefusesWhatNoScreenCanShow) {
   v1::SetStudy message = State("P01");
   message.mutable_study()->set_active_s(std::numeric_limits<double>::infinity());
   ASSERT_TRUE(relay.OnSetStudy(kStudyClient, message).ok());
-  EXPECT_EQ(relay.TakeChange()->active_s, 0);  // As the protocol reads what is not finite.
+  EXPECT_EQ(relay.TakeChange(0)->active_s, 0);  // As the protocol reads what is not finite.
 }
 
 TEST(StudyRelay, IsForTheHolderOfTheLease) {
