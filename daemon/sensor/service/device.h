@@ -132,6 +132,9 @@ struct TickContent {
 
 /// Bounds a tick against a device that floods; a tick of eight devices has some ten of each.
 inline constexpr std::size_t kMaxSamplesPerTick = 1024;
+/// The same of raw reports, together: most are some 20 bytes, those of an inertial sensor that
+/// sends many samples at once 575.
+inline constexpr std::size_t kMaxRawBytesPerTick = 64 << 10;
 /// The same of poses, which are some 2 KiB each.
 inline constexpr std::size_t kMaxReferencesPerTick = 64;
 /// And of contact samples, which are some 0.7 KiB.

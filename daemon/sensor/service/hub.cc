@@ -45,7 +45,9 @@ void Hub::OnDetach(devices::DeviceHandle handle, const std::string& reason) {
 
 void Hub::AddRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
                  bool to_device, std::int64_t true_ns, bool feature) {
-  if (content_.raw.size() >= kMaxSamplesPerTick || bytes.size() > 64) return;
+  if (content_.raw.size() >= kMaxSamplesPerTick) return;
+  if (bytes.size() > kMaxRawBytesPerTick - raw_bytes_) return;
+  raw_bytes_ += bytes.size();
   stream::RawReport raw;
   raw.device = device.number();
   raw.received_ns = at_ns;
@@ -122,6 +124,7 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   if (setup_.Watch()) status_due_ = true;
   trackers_.Publish(now_ns, content_);
   PublishStatus(now_ns);
+  raw_bytes_ = 0;
   return std::exchange(content_, {});
 }
 

@@ -102,6 +102,7 @@ class Hub {
   TrackerInput trackers_;
   std::map<std::uint32_t, Lease> leases_;  ///< By device.
   TickContent content_;
+  std::size_t raw_bytes_ = 0;  ///< Length of its raw reports, together.
   std::vector<stream::DeviceState> last_states_;
   std::int64_t status_ns_ = 0;
   bool status_due_ = true;

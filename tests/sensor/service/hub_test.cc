@@ -8,6 +8,7 @@
 #include <map>
 
 #include "common/base/units.h"
+#include "common/stream/product_ids.h"
 #include "common/stream/roles.h"
 #include "common/virtual/devices/phone.h"
 #include "tests/sensor/service/fixture.h"
@@ -312,6 +313,28 @@ TEST(Hub, RawReportsOfBothDirectionsAreKept) {
   }
   EXPECT_GT(in, 40u);
   EXPECT_GE(out, 4u);  // Status, calibration, mode, LEDs.
+}
+
+TEST(Hub, LongReportsOfManySamplesAreKeptRaw) {
+  // A page that sends by requests: up to 20 samples in a report of 575 bytes.
+  Bench bench;
+  devices::DeviceIdentity identity;
+  identity.vendor = stream::kVendorFooting;
+  identity.product = stream::kProductInertial;
+  identity.serial = "phone";
+  constexpr devices::DeviceHandle kPhone = 77;
+  bench.hub().OnAttach(kPhone, identity);
+  std::vector<std::uint8_t> report(15 + 20 * 28, 0);
+  report[0] = 1;
+  report[14] = 20;
+  bench.Receive(kPhone, report);
+  bench.Advance(0.01);
+  ASSERT_EQ(bench.content.raw.size(), 1u);
+  EXPECT_EQ(bench.content.raw[0].report, report);
+  for (int i = 0; i < 1'000; ++i) bench.Receive(kPhone, report);
+  bench.content = {};
+  bench.Advance(0.01);
+  EXPECT_EQ(bench.content.raw.size(), kMaxRawBytesPerTick / report.size());
 }
 
 TEST(Hub, WhatAWiimoteClipsAJoyConMeasuresUpToItsFeatures) {
