@@ -15,13 +15,15 @@ const int kSamples = 5;
 const float kMps2 = 9.80665f / 4096;               // At a range of 8 g.
 const float kRadps = 3.14159265f / 180 / 16.384f;  // At a range of 2000 degrees/s.
 
+const uint8_t kFlags = 2 | 8, kEndOfX = 16;         // With rates; it says where the range ends.
+
 // The report of any inertial sensor (docs/devices.md), as it lies in the memory of a little-endian processor.
 struct __attribute__((packed)) Sample {
   uint32_t age_us;
   float acceleration[3], rate[3];
 };
 struct __attribute__((packed)) Report {
-  uint8_t id = 1, flags = 2, buttons = 0, battery = 255;
+  uint8_t id = 1, flags = kFlags, buttons = 0, battery = 255;
   uint16_t number = 0;
   uint64_t time_us = 0;
   uint8_t count = kSamples;
@@ -66,7 +68,11 @@ void loop() {
   Wire.endTransmission(false);
   Wire.requestFrom(kMpu, (uint8_t)14);
   Sample& sample = report.samples[filled];
-  for (int axis = 0; axis < 3; ++axis) sample.acceleration[axis] = Next() * kMps2;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int16_t count = Next();
+    if (count == INT16_MAX || count == INT16_MIN) report.flags |= kEndOfX << axis;
+    sample.acceleration[axis] = count * kMps2;
+  }
   Next();  // Temperature.
   for (int axis = 0; axis < 3; ++axis) sample.rate[axis] = Next() * kRadps;
   taken_us[filled++] = now_us;
@@ -75,8 +81,10 @@ void loop() {
   report.number++;
   report.time_us = now_us;
   for (int i = 0; i < kSamples; ++i) report.samples[i].age_us = now_us - taken_us[i];
-  if (WiFi.status() != WL_CONNECTED) return;
-  udp.beginPacket(kHost, kPort);
-  udp.write((const uint8_t*)&report, sizeof(report));
-  udp.endPacket();
+  if (WiFi.status() == WL_CONNECTED) {
+    udp.beginPacket(kHost, kPort);
+    udp.write((const uint8_t*)&report, sizeof(report));
+    udp.endPacket();
+  }
+  report.flags = kFlags;
 }

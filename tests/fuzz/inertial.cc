@@ -30,6 +30,7 @@ void CheckSamples(const decode::Decoded& decoded) {
     before_ns = sample.sampled_ns;
     Expect(sample.specific_force_mps2.norm() <= 1000);
     Expect(sample.angular_velocity_radps.norm() <= 200);
+    Expect(sample.clipped_axes < 8);
   }
 }
 

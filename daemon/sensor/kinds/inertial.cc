@@ -21,6 +21,7 @@ void InertialSensor::Restart() {
   last_.reset();
   number_.reset();
   lost_ = 0;
+  range_end_ = {};
 }
 
 std::optional<decode::Decoded> InertialSensor::Take(std::int64_t /*received_ns*/,
@@ -37,6 +38,8 @@ std::optional<decode::Decoded> InertialSensor::Take(std::int64_t /*received_ns*/
     stream::MotionSample& sample = decoded.motion.emplace_back();
     sample.sampled_ns = measured.device_ns;
     sample.specific_force_mps2 = measured.specific_force_S_mps2;
+    sample.clipped_axes = report->knows_end ? measured.clipped_axes
+                                            : range_end_.AxesAt(measured.specific_force_S_mps2);
     sample.has_angular_velocity = report->has_rate;
     sample.angular_velocity_radps = measured.angular_velocity_S_radps;
     sample.buttons = report->buttons;

@@ -32,6 +32,7 @@ class InertialSensor : public kinds::Kind {
  private:
   std::optional<reports::InertialSample> last_;
   std::optional<std::uint16_t> number_;
+  reports::RangeEnd range_end_;
   std::uint64_t lost_ = 0;  ///< Reports by their numbers.
   double battery_fraction_ = -1;
   bool vibrates_ = false;

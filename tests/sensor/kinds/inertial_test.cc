@@ -109,6 +109,42 @@ TEST(InertialSensor, SamplesHaveTheTimesOfItsOwnClock) {
   EXPECT_EQ(sensor.Note(0), "2 of its reports were lost on the way");
 }
 
+/// The clipped axes of each sample of a report.
+std::vector<std::uint32_t> ClippedOf(InertialSensor& sensor, const std::vector<Measured>& samples,
+                                     std::uint8_t flags) {
+  const auto decoded = Take(sensor, 0, ReportOf(0, 1'000'000, samples, flags));
+  if (!decoded) return {};
+  std::vector<std::uint32_t> axes;
+  for (const stream::MotionSample& sample : decoded->motion) axes.push_back(sample.clipped_axes);
+  return axes;
+}
+
+TEST(InertialSensor, SamplesAtTheEndOfTheRangeThatItNamesAreMarked) {
+  using Axes = std::vector<std::uint32_t>;
+  InertialSensor sensor;
+  const std::uint8_t knows = reports::kInertialHasRate | reports::kInertialKnowsEnd;
+  const std::vector<Measured> swing = {{30, {70, 5, 9}}, {20, {78.4f, 6, 9}}, {10, {-78.5f, 5, 9}}};
+  EXPECT_EQ(ClippedOf(sensor, swing, knows), (Axes{0, 0, 0})) << "its range is larger";
+  EXPECT_EQ(ClippedOf(sensor, swing, knows | reports::kInertialEndX), (Axes{0, 1, 1}));
+  EXPECT_EQ(ClippedOf(sensor, swing, knows | reports::kInertialEndY), (Axes{0, 2, 0}));
+  EXPECT_EQ(ClippedOf(sensor, {{0, {1, 2, -78.4f}}}, knows | reports::kInertialEndZ), Axes{4});
+}
+
+TEST(InertialSensor, TheEndOfAnUnknownRangeIsSeen) {
+  using Axes = std::vector<std::uint32_t>;
+  InertialSensor sensor;
+  // A swing to 30 m/s² is far from any usual end; the same sensor then ends at 4 g.
+  EXPECT_EQ(ClippedOf(sensor, {{10, {30, 0, 9.8f}}, {0, {29.9f, 0, 9.8f}}}, 2), (Axes{0, 0}));
+  EXPECT_EQ(
+      ClippedOf(sensor, {{20, {35, 0, 9.8f}}, {10, {39.2f, 0, 9.8f}}, {0, {39.1f, 0, 9.8f}}}, 2),
+      (Axes{0, 1, 1}));
+  EXPECT_EQ(ClippedOf(sensor, {{0, {0, -39.2f, 38}}}, 2), Axes{2});
+  // One that goes beyond ends further out.
+  EXPECT_EQ(ClippedOf(sensor, {{10, {50, 0, 9.8f}}, {0, {39.2f, 0, 9.8f}}}, 2), (Axes{0, 0}));
+  sensor.Restart();
+  EXPECT_EQ(ClippedOf(sensor, {{0, {39.2f, 0, 9.8f}}}, 2), Axes{1});
+}
+
 TEST(InertialSensor, ASimulatedPhoneMeasuresInStepsUpToItsRange) {
   std::vector<long> ranges_g;
   std::vector<std::uint8_t> signs;
@@ -124,6 +160,7 @@ TEST(InertialSensor, ASimulatedPhoneMeasuresInStepsUpToItsRange) {
     const stream::MotionSample& sample = decoded->motion.at(0);
     EXPECT_NEAR(sample.specific_force_mps2.x(), 2, 0.2) << seed;
     EXPECT_NEAR(sample.specific_force_mps2.y(), phone.range_mps2(), 0.06) << seed;
+    EXPECT_EQ(sample.clipped_axes, 2u) << seed;
     for (const double value : sample.specific_force_mps2) {
       EXPECT_NEAR(std::remainder(value, 0.1), 0, 1e-4) << seed;
     }
