@@ -28,7 +28,8 @@ Eigen::Vector3d ForceAt(DeviceRole role, const users::Felt& felt) {
 
 }  // namespace
 
-HeldDevices::HeldDevices(HeldKind kind, const std::vector<DeviceRole>& roles, std::uint64_t seed)
+HeldDevices::HeldDevices(HeldKind kind, const std::vector<DeviceRole>& roles, std::uint64_t seed,
+                         const users::Felt& at_rest)
     : hub_({}, {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
                   Held& held = held_[handle - 1];
                   auto* joycon = std::get_if<HeldJoycon>(&held.device);
@@ -51,7 +52,6 @@ HeldDevices::HeldDevices(HeldKind kind, const std::vector<DeviceRole>& roles, st
     identity.wished_role = held_[i].role;
     hub_.OnAttach(i + 1, identity);
   }
-  const users::Felt at_rest;
   for (std::size_t live = 0; live < roles.size();) {
     Feel(at_rest);
     Feel(at_rest);

@@ -29,9 +29,10 @@ class HeldDevices {
  public:
   static constexpr double kStepS = 0.005;  ///< Between two samples of a Joy-Con.
 
-  /// One for each role, right Joy-Cons for the right hand and leg; returns when all are live,
-  /// having lain face up.
-  HeldDevices(HeldKind kind, const std::vector<stream::DeviceRole>& roles, std::uint64_t seed);
+  /// One for each role, right Joy-Cons for the right hand and leg; returns when all are live, in
+  /// the hands of somebody who feels `at_rest`.
+  HeldDevices(HeldKind kind, const std::vector<stream::DeviceRole>& roles, std::uint64_t seed,
+              const users::Felt& at_rest);
 
   /// The next input of every device, kStepS after the one before.
   void Feel(const users::Felt& felt);

@@ -265,8 +265,11 @@ class TrackTrial {
     kick_rad_ = random.Uniform(-kPi, kPi);
     driver_.SeeTrack(engine_.track());
     if (user.interface) {
-      embodied_.emplace(Embodied{{*user.interface, StyleOf(user), user.seed, user.turn_by},
-                                 {*user.interface, user.turn_by, user.seed, user.devices}});
+      users::Person person(*user.interface, StyleOf(user), user.seed, user.turn_by);
+      person.Advance(0, {});
+      const users::Felt at_rest = person.felt();
+      embodied_.emplace(Embodied{
+          std::move(person), {*user.interface, user.turn_by, user.seed, user.devices, at_rest}});
     }
     if (embodied_) WaitForTrial();
     inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), user.seed)};
@@ -429,10 +432,10 @@ std::vector<features::Member> MembersFor(UserInterface interface, TurnSource tur
 }  // namespace
 
 UserDevices::UserDevices(UserInterface interface, TurnSource turn_by, std::uint64_t seed,
-                         HeldKind kind)
+                         HeldKind kind, const users::Felt& at_rest)
     : interface_(interface), random_(seed), chain_(MembersFor(interface, turn_by)) {
   if (kind != HeldKind::kWiimote) {
-    held_ = std::make_unique<HeldDevices>(kind, stream::RolesOf(interface, turn_by), seed);
+    held_ = std::make_unique<HeldDevices>(kind, stream::RolesOf(interface, turn_by), seed, at_rest);
   }
   for (const std::uint64_t board : {1u, 2u}) {
     cells_.emplace_back(virtual_sensors::CellErrorConfig{

@@ -194,9 +194,10 @@ class UserDevices {
  public:
   static constexpr double kTickS = 0.01;
 
-  /// `turn_by` is of the leg interface.
+  /// `turn_by` is of the leg interface; `at_rest` is what Joy-Cons and phones feel until they are
+  /// live.
   UserDevices(stream::UserInterface interface, stream::TurnSource turn_by, std::uint64_t seed,
-              HeldKind kind = HeldKind::kWiimote);
+              HeldKind kind = HeldKind::kWiimote, const users::Felt& at_rest = {});
 
   /// Half a tick before Take.
   void Feel(const users::Felt& felt);
