@@ -26,30 +26,30 @@ EngineInputs Pushed(double x_ns, double y_ns) {
   return inputs;
 }
 
-/// Falls after pushes of 40 N s to either side and aslant, at times all over two steps.
+/// Falls within 1.5 s of pushes of 40 N s to either side, at times all over two steps.
 int FallsAfterPushes(bool foresees) {
   GaitEngine engine = NewRunner(foresees);
-  Simulate(engine, kRun, 8);
+  Simulate(engine, kRun, 6);
   int falls = 0;
-  for (int phase = 0; phase < 9; ++phase) {
+  for (int phase = 0; phase < 8; ++phase) {
     const EngineState before = engine.Save();
-    for (const double side : {-1, 1}) {
-      for (const double ahead_ns : {0, 28}) {
-        engine.Restore(before);
-        Simulate(engine, Pushed(ahead_ns, side * (ahead_ns > 0 ? 28 : 40)), 4);
-        falls += static_cast<int>(engine.Output().gait.falls);
-      }
+    for (const double side_ns : {-40, 40}) {
+      engine.Restore(before);
+      Simulate(engine, Pushed(0, side_ns), 1.5);
+      falls += static_cast<int>(engine.Output().gait.falls);
     }
     engine.Restore(before);
-    Simulate(engine, kRun, 0.09);
+    Simulate(engine, kRun, 0.1);
   }
   return falls;
 }
 
 TEST(Foresight, SavesMostFallsAfterPushes) {
   const int blind = FallsAfterPushes(false), seeing = FallsAfterPushes(true);
-  EXPECT_GE(blind, 6);
+  EXPECT_GE(blind, 3);
   EXPECT_LE(3 * seeing, blind) << blind;
+  RecordProperty("blind", blind);
+  RecordProperty("seeing", seeing);
 }
 
 TEST(Foresight, LeavesARegularGaitAlone) {
