@@ -65,8 +65,10 @@ stream::SetupItem Outcome(Item item, const std::string& serial, bool passed, dou
 
 namespace {
 
-/// 30 frames of a camera with 15 a second.
+/// 30 frames of a camera with 15 a second. A slower one is waited for: who holds a pose for so
+/// long has not moved, however many frames that were.
 constexpr double kRestS = 2;
+constexpr double kLongestRestS = 10;
 /// A sphere that rests where nobody brought it is not on a mark.
 constexpr double kBroughtM = 0.1;
 /// A lens that is not calibrated sees lengths wrong by less than this share; a sphere that rests
@@ -157,9 +159,27 @@ std::optional<Eigen::Vector2d> CameraStep::Standing(const Situation& now,
   return moment_nm / load_n;
 }
 
+std::int64_t CameraStep::RestFrom(const Situation& now, const SetUpOptions& options) const {
+  const std::int64_t longest_ns =
+      std::max(asked_ns_, now.now_ns - SecondsToNanoseconds(kLongestRestS));
+  std::int64_t from_ns = std::max(asked_ns_, now.now_ns - SecondsToNanoseconds(kRestS));
+  for (const stream::DeviceRole role : roles_) {
+    const auto samples = now.recent->Hands(options.rig, role, longest_ns, now.now_ns);
+    std::size_t count = 0;
+    std::int64_t enough_ns = longest_ns;
+    for (auto one = samples.rbegin(); one != samples.rend(); ++one) {
+      if (!camera_pose::InTrackerFrame(*one) || ++count < camera_pose::kLeastFrames) continue;
+      enough_ns = one->received_ns;
+      break;
+    }
+    from_ns = std::min(from_ns, enough_ns);
+  }
+  return from_ns;
+}
+
 CameraStep::Rest CameraStep::Look(const Situation& now, const SetUpOptions& options) const {
   Rest rest;
-  const std::int64_t from_ns = std::max(asked_ns_, now.now_ns - SecondsToNanoseconds(kRestS));
+  const std::int64_t from_ns = RestFrom(now, options);
   const std::size_t first = places_[next_];
   std::vector<camera_pose::SeenMark> seen;
   for (std::size_t k = 0; k < roles_.size(); ++k) {

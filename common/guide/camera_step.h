@@ -136,6 +136,8 @@ class CameraStep {
   };
 
   void Begin(const Situation& now, const SetUpOptions& options);
+  /// Begin of the stretch in which the spheres are to rest: long enough, and with enough frames.
+  std::int64_t RestFrom(const Situation& now, const SetUpOptions& options) const;
   Rest Look(const Situation& now, const SetUpOptions& options) const;
   /// Centre of pressure of who stands on the boards, W; nothing when nobody does.
   std::optional<Eigen::Vector2d> Standing(const Situation& now, const SetUpOptions& options,

@@ -13,7 +13,7 @@ from harness import Stage, read_ticks
 
 # The camera stands 2 m in front of the person and looks along -x of W: w, x, y, z of the turn.
 PLACE = {"position_W_m": (2.0, 0.05, 1.2), "rotation_WC": (0.5, -0.5, -0.5, 0.5)}
-# Small frames and many, so that a busy machine too shows the 15 a second that a pose needs; larger spheres for them.
+# Small frames and many, so that a busy machine too shows the 3 a second that a pose needs; larger spheres for them.
 LENS = {"width": 272, "height": 144, "fx_px": 270, "fy_px": 270, "cx_px": 135.5, "cy_px": 71.5, "rate_hz": 30}
 SPHERES = [{"role": "left_hand", "colour_dn": [9, 90, 9], "radius_m": 0.045},
            {"role": "right_hand", "colour_dn": [9, 9, 90], "radius_m": 0.045}]
@@ -33,7 +33,7 @@ def hold(stage, pose):
     if "footing-stream" in stage.processes:
         stage.stop("footing-stream")
     motion = stage.folder / "motion.json"
-    motion.write_text(json.dumps({"sway_mm": 1, "keys": [{"seconds": 0.7, **pose}, {"seconds": 90}]}))
+    motion.write_text(json.dumps({"sway_mm": 1, "keys": [{"seconds": 0.7, **pose}, {"seconds": 120}]}))
     stage.start("footing-stream", "boards", "--motion", motion, "--height-m", HEIGHT_M, "--hands", "camera", "--camera",
                 stage.folder / "world.json", "--frames-to", stage.folder / "fifo", "--to", stage.devices)
 
@@ -41,7 +41,7 @@ def hold(stage, pose):
 def guide(stage, camera):
     """The guided item with a person who follows its prompts; what it stores."""
     command = [stage.binaries / "footing-ctl", "--connect", stage.sensor, "setup", "--only", "camera", "--camera", camera,
-               "--calibration", "poses", "--height-m", HEIGHT_M, "--fist-to-sphere-m", 0, "--tries", 1, "--patience", 60,
+               "--calibration", "poses", "--height-m", HEIGHT_M, "--fist-to-sphere-m", 0, "--tries", 1, "--patience", 120,
                "--script", "--json"]
     process = subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     stage.processes["footing-ctl"] = process

@@ -154,6 +154,7 @@ class Poser final : public Holder {
   bool exchanged = false;          ///< Each controller is in the other hand.
   bool stands = true;              ///< On the boards.
   double moving_m = 0;             ///< How far the left hand goes to and fro.
+  int every = 1;                   ///< Frames of 60 a second from one that is seen to the next.
   std::vector<int> right_holds{};  ///< The right hand's pose in each one; empty: as asked.
 
  private:
@@ -173,8 +174,10 @@ class Poser final : public Holder {
     const double moved_m = moving_m * std::sin(3 * NanosecondsToSeconds(now_ns_));
     const Vector3d left = poses_[2 * pose_].p_W_m + over + Vector3d(0, moved_m, 0) + Trembling();
     const Vector3d right = poses_[2 * right_pose + 1].p_W_m + over + Trembling();
-    Holder::See(stream::DeviceRole::kLeftHand, exchanged ? right : left);
-    Holder::See(stream::DeviceRole::kRightHand, exchanged ? left : right);
+    if (frame_++ % every == 0) {
+      Holder::See(stream::DeviceRole::kLeftHand, exchanged ? right : left);
+      Holder::See(stream::DeviceRole::kRightHand, exchanged ? left : right);
+    }
     for (std::uint32_t i = 0; i < 2; ++i) {
       stream::BoardSample board;
       board.device = i + 1;
@@ -194,6 +197,7 @@ class Poser final : public Holder {
 
   std::vector<camera_pose::Mark> poses_;
   std::size_t pose_ = 0;
+  int frame_ = 0;
 };
 
 double TurnDeg(const Eigen::Isometry3d& X_WC) {
@@ -293,6 +297,22 @@ TEST(CameraStep, LeadsThroughThreePosesToAStoredPose) {
   EXPECT_LT((poser.stored[0].X_WC.translation() - kTrue.translation()).norm(), 0.015);
   EXPECT_EQ(poser.shown.back().marks.size(), 6u);
   EXPECT_TRUE(poser.shown.back().marks[5].residual_m);
+}
+
+TEST(CameraStep, WaitsForTheFramesOfASlowCamera) {
+  Poser poser;
+  poser.every = 12;
+  const auto results = poser.Do();
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_TRUE(results[0].passed) << results[0].note;
+  EXPECT_LT(TurnDeg(poser.stored.at(0).X_WC), 0.5);
+  Poser moving;
+  moving.every = 12;
+  moving.moving_m = 0.05;
+  EXPECT_THAT(moving.Do().at(0).note, HasSubstr("left hand: the sphere moved by"));
+  Poser rare;  // Fewer than 30 frames in ten seconds.
+  rare.every = 24;
+  EXPECT_THAT(rare.Do().at(0).note, HasSubstr("30 are needed"));
 }
 
 TEST(CameraStep, DoesNotTakeAPoseOfAWrongArmOrOfAHandThatMoves) {
