@@ -384,6 +384,7 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
       {"paper.variance_share", &paper.variance_share},
       {"paper.span", &paper.search.span},
       {"paper.reach", &paper.search.reach},
+      {"paper.carry", &paper.search.carry},
       {"paper.hand_sd_m", &paper.hand_sd_m},
       {"paper.arm_sd_rad", &paper.arm_sd_rad},
       {"paper.foot_sd_m", &paper.foot_sd_m},
@@ -398,7 +399,14 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
       {"paper.angular_near_zero", &momenta.angular.near_zero},
       {"paper.angular_after_s", &momenta.angular.after_s},
       {"paper.angular_fades_s", &momenta.angular.fades_s},
+      {"paper.true_com_sd_m", &paper.true_com_sd_m},
+      {"paper.true_angular_sd", &paper.true_angular_sd},
   };
+}
+
+std::map<std::string, int*> CountsOf(reconstruction::Options& options) {
+  pose::FibonacciOptions& search = options.paper.search;
+  return {{"paper.evaluations", &search.evaluations}, {"paper.sweeps", &search.sweeps}};
 }
 
 }  // namespace
@@ -406,18 +414,27 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
 Result<void> SetConstants(const std::vector<std::string>& assignments,
                           reconstruction::Options& options) {
   const std::map<std::string, double*> names = ConstantsOf(options);
+  const std::map<std::string, int*> counts = CountsOf(options);
   for (const std::string& assignment : assignments) {
     const auto equal = assignment.find('=');
     const auto found = names.find(assignment.substr(0, equal));
     char* end = nullptr;
     const double value =
         equal == std::string::npos ? NAN : std::strtod(assignment.c_str() + equal + 1, &end);
-    if (found == names.end() || !std::isfinite(value) || *end != '\0') {
+    const auto count = counts.find(assignment.substr(0, equal));
+    const bool whole = value == std::round(value) && value >= 1 && value <= 100;
+    const bool known = found != names.end() || (count != counts.end() && whole);
+    if (!known || !std::isfinite(value) || *end != '\0') {
       std::string list;
       for (const auto& [name, place] : names) list += (list.empty() ? "" : ", ") + name;
+      for (const auto& [name, place] : counts) list += ", " + name + " (1 to 100)";
       return UsageError("--constant " + assignment + ": say NAME=VALUE with one of " + list);
     }
-    *found->second = value;
+    if (found != names.end()) {
+      *found->second = value;
+    } else {
+      *count->second = static_cast<int>(value);
+    }
   }
   return {};
 }

@@ -361,6 +361,7 @@ FibonacciSearch::FibonacciSearch(const body::Body& body, const PoseBasis& basis,
       basis_(&basis),
       options_(options),
       a_(Eigen::VectorXd::Zero(basis.size())),
+      a_before_(a_),
       q_(basis.mean),
       q_before_(basis.mean),
       rate_(Eigen::VectorXd::Zero(basis.dof())),
@@ -426,10 +427,25 @@ void FibonacciSearch::Search(const PoseTargets& targets, int component, double l
   a_(component) = left_cost < right_cost ? left : right;
 }
 
-void FibonacciSearch::Solve(const PoseTargets& targets) {
+void FibonacciSearch::Begin() {
   if (!started_) a_.setZero();
   q_before_ = basis_->mean;
   q_before_.noalias() += basis_->modes * a_;
+  if (!started_) {
+    a_before_ = a_;
+    return;
+  }
+  const double carry = std::pow(options_.carry, 60 * options_.frame_s);
+  for (int i = 0; i < basis_->size(); ++i) {
+    const double reach = options_.reach * basis_->sd(i);
+    const double moved = a_(i) + carry * (a_(i) - a_before_(i));
+    a_before_(i) = a_(i);
+    a_(i) = std::clamp(moved, -reach, reach);
+  }
+}
+
+void FibonacciSearch::Solve(const PoseTargets& targets) {
+  Begin();
   const int sweeps = started_ ? options_.sweeps : options_.first_sweeps;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int i = 0; i < basis_->size(); ++i) {
@@ -443,6 +459,7 @@ void FibonacciSearch::Solve(const PoseTargets& targets) {
   q_ = basis_->mean;
   q_.noalias() += basis_->modes * a_;
   cost_ = Cost(targets);
+  if (!started_) a_before_ = a_;
   started_ = true;
 }
 

@@ -173,6 +173,10 @@ struct FibonacciOptions {
   /// within. Where twice as much was allowed, coefficients that little holds wandered to where no
   /// pose is and stayed there, since each search begins from the last (docs/evaluation/pose.md).
   double reach = 2.5;
+  /// A later frame begins with its coefficients moved on by this share of their last change (at 60
+  /// Hz): the components that are not searched yet then have the momentum that they had. From rest
+  /// the first component alone would take on that of the whole body.
+  double carry = 0.6;
   double frame_s = 1.0 / 60;
 };
 
@@ -197,6 +201,8 @@ class FibonacciSearch {
 
  private:
   double Cost(const PoseTargets& targets);
+  /// Coefficients and pose that the search of a frame begins with.
+  void Begin();
   /// Equation (6) with coefficient `component` at `value`, the others as they are.
   double CostAt(const PoseTargets& targets, int component, double value);
   void Search(const PoseTargets& targets, int component, double lower, double upper);
@@ -206,7 +212,7 @@ class FibonacciSearch {
   FibonacciOptions options_;
   bool started_ = false;
   double cost_ = 0;
-  Eigen::VectorXd a_, q_, q_before_, rate_, without_;
+  Eigen::VectorXd a_, a_before_, q_, q_before_, rate_, without_;
   body::Kinematics at_;
   body::JointVelocities velocities_;
 };

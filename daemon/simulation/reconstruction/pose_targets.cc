@@ -306,8 +306,6 @@ void PaperMode::SetTargets(const Measurement& now, const Truth& truth, double ma
 namespace {
 
 constexpr double kTrueFootSdM = 0.015, kTrueComSdM = 0.01, kTrueAngularSd = 1;
-// One sweep finds no pose to match a change of momentum exactly: held closer, it stays behind.
-constexpr double kTrueAngularSearchSd = 10;
 constexpr double kHingeM = 0.25;   // Distance at which a turn of the upper arm counts as a length.
 constexpr double kSegmentM = 0.2;  // The same of worn sensors; any length makes the same terms.
 
@@ -468,16 +466,16 @@ void SetMomentumTargets(const std::optional<WalkPrior::Com>& com, pose::PoseTarg
 
 void OverrideMomentumTargets(const Truth& truth, const Options& options,
                              pose::PoseTargets& targets) {
+  const bool paper = options.mode == Mode::kPaper;
   if (truth.com_W_m) {
     targets.has_com = true;
     targets.com_W_m = *truth.com_W_m;
-    targets.com_sd_m.setConstant(kTrueComSdM);
+    targets.com_sd_m.setConstant(paper ? options.paper.true_com_sd_m : kTrueComSdM);
   }
   if (truth.angular_W) {
     targets.has_angular = options.use_angular_momentum;
     targets.angular_W = *truth.angular_W;
-    targets.angular_sd.setConstant(options.mode == Mode::kPaper ? kTrueAngularSearchSd
-                                                                : kTrueAngularSd);
+    targets.angular_sd.setConstant(paper ? options.paper.true_angular_sd : kTrueAngularSd);
   }
 }
 

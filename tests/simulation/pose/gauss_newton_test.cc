@@ -240,6 +240,34 @@ TEST(FibonacciSearch, LowersEquation6FrameByFrame) {
   EXPECT_LT(world.WorstM(solver.q(), targets), 0.25 * at_mean_m);
 }
 
+/// Mean of equation (6) over a steady motion of two components, with its angular momentum.
+double MeanCostOfAMotion(double carry) {
+  World world;
+  FibonacciOptions options;
+  options.carry = carry;
+  FibonacciSearch solver(world.person, world.basis, options);
+  body::JointVelocities velocities(world.person.skeleton);
+  const Eigen::VectorXd step =
+      0.03 * (world.basis.modes.leftCols(2) * world.basis.sd.head(2)).eval();
+  double sum = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const Eigen::VectorXd q = world.poses.col(7) + frame * step;
+    PoseTargets targets = world.Targets(q, 0.02);
+    body::ComputeKinematics(world.person.skeleton, q, world.at);
+    body::ComputeVelocities(world.person.skeleton, world.at, step / options.frame_s, velocities);
+    targets.has_angular = true;
+    targets.angular_sd.setConstant(10);
+    targets.angular_W = body::ComputeMomentum(world.person, world.at, velocities).angular_W;
+    solver.Solve(targets);
+    if (frame >= 5) sum += solver.cost() / 15;
+  }
+  return sum;
+}
+
+TEST(FibonacciSearch, FollowsAMotionThatGoesOn) {
+  EXPECT_LT(MeanCostOfAMotion(FibonacciOptions().carry), 0.8 * MeanCostOfAMotion(0));
+}
+
 TEST(FibonacciSearch, KeepsEveryCoefficientWithinItsRange) {
   World world;
   FibonacciSearch solver(world.person, world.basis, {});
