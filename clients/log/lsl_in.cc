@@ -20,6 +20,7 @@
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/net/address.h"
+#include "common/net/own_address.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/timer.h"
 #include "footing/v1/lsl.pb.h"
@@ -318,7 +319,7 @@ class StreamsRecorder::Implementation
       const std::string text = Encode(request);
       SendTo("127.0.0.1", text);
       SendTo("255.255.255.255", text);
-      for (const std::string& interface : OwnAddresses()) {
+      for (const std::string& interface : transport::OwnAddresses()) {
         error_code ignored;  // It may be down by now.
         socket_.set_option(
             asio::ip::multicast::outbound_interface(asio::ip::make_address_v4(interface)), ignored);

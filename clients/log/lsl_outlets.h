@@ -70,7 +70,4 @@ double NowS();
 /// A new random uid, UUID version 4.
 std::string NewUid();
 
-/// The IPv4 addresses of this host's interfaces that are up.
-std::vector<std::string> OwnAddresses();
-
 }  // namespace footing::log_client::lsl
