@@ -65,8 +65,8 @@ stream::SetupItem Outcome(Item item, const std::string& serial, bool passed, dou
 
 namespace {
 
-/// 30 frames of a camera with 15 a second. A slower one is waited for: who holds a pose for so
-/// long has not moved, however many frames that were.
+/// 30 frames of a camera with 15 a second. A slower one is waited for: a pose held for this time
+/// has not moved, however many frames that were.
 constexpr double kRestS = 2;
 constexpr double kLongestRestS = 10;
 /// A sphere that rests where nobody brought it is not on a mark.

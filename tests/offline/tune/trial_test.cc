@@ -240,7 +240,7 @@ TEST(Tasks, OfThePapersGaitsChangeIntoThemToo) {
   EXPECT_NEAR(changes, 100, 26);
 }
 
-TEST(Disturbances, JumpsAreAsHighAsTheyAreAccepted) {
+TEST(Disturbances, JumpsAreAsHighAsTheBuiltInTablesWereTunedFor) {
   double highest_m = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     highest_m = std::max(highest_m, Draw({stream::Gait::kJump, 2}, seed).height_m);
