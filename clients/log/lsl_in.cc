@@ -21,6 +21,7 @@
 #include "common/base/units.h"
 #include "common/net/address.h"
 #include "common/net/own_address.h"
+#include "common/net/socket.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/timer.h"
 #include "footing/v1/lsl.pb.h"
