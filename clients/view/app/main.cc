@@ -185,7 +185,8 @@ int main(int argc, char** argv) {
       "  footing-view --recording walk.mcap\n"
       "  footing-view --recording study.mcap --trial p07-1 --beside study.mcap:p07-2\n"
       "  footing-view --screenshot bird.png --at 5\n"
-      "  footing-view --recording walk.mcap --record walk.mp4 --record-hz 30 --view-angle 90\n"
+      "  footing-view --recording walk.mcap --record walk.mp4 --record-hz 30\n"
+      "  footing-view --screenshot side.png --at 5 --view-angle 90\n"
       "  footing-view --camera-preview\n"
       "  footing-view --next-subject p08.json --next-subject p09.json\n"
       "  footing-view --text --seconds 30 --json");
