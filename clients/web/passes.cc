@@ -1,34 +1,23 @@
 #include "clients/web/passes.h"
 
 #include <algorithm>
-#include <array>
 #include <sstream>
+#include <tuple>
 
-#include <openssl/sha.h>
 #include <boost/asio/ip/address.hpp>
 
 #include "common/base/units.h"
+#include "common/model/model.h"
 #include "common/net/access.h"
 
 namespace footing::web {
 namespace {
 
-constexpr std::string_view kHexDigits = "0123456789abcdef";
-
-std::string HashOf(std::string_view pass) {
-  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
-  SHA256(reinterpret_cast<const unsigned char*>(pass.data()), pass.size(), digest.data());
-  std::string hash;
-  for (const unsigned char byte : digest) {
-    hash += kHexDigits[byte >> 4];
-    hash += kHexDigits[byte & 15];
-  }
-  return hash;
-}
+std::string HashOf(std::string_view pass) { return model::Hex(model::Sha256(pass)); }
 
 bool IsHash(const std::string& text) {
-  return text.size() == 2 * SHA256_DIGEST_LENGTH &&
-         text.find_first_not_of(kHexDigits) == std::string::npos;
+  return text.size() == 2 * std::tuple_size_v<model::Digest> &&
+         text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 }  // namespace

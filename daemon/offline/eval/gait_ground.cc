@@ -169,7 +169,7 @@ double StepCost::BareUs() {
 Result<double> MeasureStepCostRatio(const biped::GaitCommand& command, const GroundKind& kind) {
   Result<StepCost> cost = StepCost::Create(command, kind);
   if (!cost) return cost.error();
-  if (cost->fell()) return 0;  // A character that is put back is no longer MuJoCo's alone.
+  if (cost->fell()) return 0;  // Bare mj_step puts no character back.
   std::vector<double> ratios;
   for (int pair = 0; pair < kPairs; ++pair) {
     double ours_us = cost->EngineUs(), bare_us = cost->BareUs();

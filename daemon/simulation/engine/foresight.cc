@@ -91,10 +91,10 @@ const gait::Gains& GainsInForce::At(const GainTables& tables, const ChosenGains&
   return gains_;
 }
 
-bool ChangesPhase(const gait::GaitMemory& before, const gait::GaitMemory& now) {
-  const bool hops = gait::IsHopping(GaitOf(now)), hopped = gait::IsHopping(GaitOf(before));
-  if (hops != hopped) return true;
-  return hops ? before.running != now.running : before.walking != now.walking;
+int PhaseOf(const gait::GaitMemory& memory) {
+  constexpr int kHopping = 100;  // Beyond the phases of walking.
+  return gait::IsHopping(GaitOf(memory)) ? kHopping + static_cast<int>(memory.running)
+                                         : static_cast<int>(memory.walking);
 }
 
 namespace {

@@ -103,7 +103,8 @@ Foresight ChooseAhead(const Outlook& now, const Stage& stage);
 /// Gait whose gains hold: running's in a thrust out of walking.
 stream::Gait GaitOf(const gait::GaitMemory& memory);
 
-/// Whether the last step was a touchdown, a lift-off or another change of the machine's phase.
-bool ChangesPhase(const gait::GaitMemory& before, const gait::GaitMemory& now);
+/// Number of the phase of the machine that runs: another one after a touchdown, a lift-off or
+/// another change.
+int PhaseOf(const gait::GaitMemory& memory);
 
 }  // namespace footing::engine

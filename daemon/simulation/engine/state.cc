@@ -154,7 +154,7 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
 }
 
 void GaitEngine::Parts::StepWorld() {
-  const gait::GaitMemory before = state.gait;
+  const int phase_before = PhaseOf(state.gait);
   const bool pushed = state.inputs.push_steps_left > 0;
   output.joint_efforts = {};
   if (!state.fallen) {  // A fallen character is limp.
@@ -175,16 +175,17 @@ void GaitEngine::Parts::StepWorld() {
   const Eigen::Vector3d moved = body.p_WC - p_WC;
   if (on.track.endless) terrain::FollowCourse(moved.head<2>(), state.track.course);
   state.distance_m += c * moved.x() + s * moved.y();
-  LookAhead(before, pushed && state.inputs.push_steps_left == 0);
+  LookAhead(phase_before, pushed && state.inputs.push_steps_left == 0);
 }
 
-void GaitEngine::Parts::LookAhead(const gait::GaitMemory& before, bool push_ended) {
+void GaitEngine::Parts::LookAhead(int phase_before, bool push_ended) {
   const bool any = !tables.choices[stream::IndexOf(GaitOf(state.gait))].empty();
   if (!any || state.fallen) {
     state.foresight = {};
     return;
   }
-  if (state.inputs.push_steps_left > 0 || !(push_ended || ChangesPhase(before, state.gait))) return;
+  if (state.inputs.push_steps_left > 0) return;
+  if (!push_ended && PhaseOf(state.gait) == phase_before) return;
   const gait::Context context{.body = body,
                               .biped = biped,
                               .gains = gains.At(tables, state.foresight.chosen, state.gait),

@@ -142,7 +142,7 @@ struct GaitEngine::Parts {
   void StepWorld();
   /// After a push, and at the phases of a gait that is out of its rhythm: chooses gains by
   /// rollouts.
-  void LookAhead(const gait::GaitMemory& before, bool push_ended);
+  void LookAhead(int phase_before, bool push_ended);
   void NoteGait(stream::Gait before);
   void NoteTrial();
   void NoteFall();

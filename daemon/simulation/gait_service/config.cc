@@ -174,17 +174,15 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
     texts.gains.push_back({path, std::move(*gains)});
   }
   const bool styled = wish.gaits == "best" && wish.more_gains.empty();
+  if (!styled) return texts;
   for (const char* name : engine::kStyleFiles) {
-    if (!styled) break;
     auto gains = config::ReadDataFile(name, wish.data_folder);
     if (!gains) return gains.error();
     texts.style.push_back({name, std::move(*gains)});
   }
-  if (styled) {
-    auto choices = config::ReadDataFile(engine::kChoicesFile, wish.data_folder);
-    if (!choices) return choices.error();
-    texts.choices = {engine::kChoicesFile, std::move(*choices)};
-  }
+  auto choices = config::ReadDataFile(engine::kChoicesFile, wish.data_folder);
+  if (!choices) return choices.error();
+  texts.choices = {engine::kChoicesFile, std::move(*choices)};
   return texts;
 }
 

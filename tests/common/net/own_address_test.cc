@@ -18,7 +18,10 @@ TEST(OwnAddress, IsOneOfThisHostAndNotLoopback) {
   const auto all = OwnAddresses();
   EXPECT_THAT(all, testing::Contains("127.0.0.1"));
   const std::string address = AddressForOthers();
-  if (address.empty()) GTEST_SKIP() << "this host is in no network";
+  if (address.empty()) {  // This host is in no network.
+    EXPECT_THAT(all, testing::Each(testing::StartsWith("127.")));
+    return;
+  }
   EXPECT_THAT(all, testing::Contains(address));
   EXPECT_NE(address.substr(0, 4), "127.");
 }
