@@ -108,10 +108,8 @@ ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose
   for (std::size_t i = start; i < scene.frames.size(); ++i)
     vertical.push_back(momentum::ToVerticalInput(
         scene.frames[i].loads, momentum::PressureOf(scene.frames[i].loads, kContactN)));
-  const auto height = momentum::SmoothVertical(
-      momentum::HeightHypothesis(momentum::HeightRow::kInaccurate, scene.subject.arms_hang_m,
-                                 pose.cell_noise_n, pose.mass_kg),
-      pose.mass_kg, step_s, pose.mean_loads, vertical);
+  const auto height = momentum::SmoothHeight(pose.mass_kg, step_s, scene.subject.arms_hang_m,
+                                             pose.cell_noise_n, pose.mean_loads, vertical);
   const std::array<momentum::HorizontalPrior, 2> priors{momentum::ForwardPrior(),
                                                         momentum::LateralPrior()};
   ordered_json out;

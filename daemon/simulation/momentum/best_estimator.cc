@@ -41,8 +41,6 @@ HorizontalPrior LateralPrior() {
 }
 
 PostureError PlainLateralPosture() { return {1.16, 0.12, 0.25, 0.01}; }
-PostureError PlainHeightPosture() { return {1, 0.15, 1, 0.01}; }
-PostureError LearnedHeightPosture() { return {1, 0.12, 1, 0.01, 0.85, 0.03}; }
 
 BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose,
                              double step_s)
@@ -58,10 +56,11 @@ BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, c
           HorizontalCom(Travelling(config.forward), TravellingPosture(), pose.mass_kg, step_s),
           HorizontalCom(Travelling(config.lateral), TravellingPosture(), pose.mass_kg, step_s)},
       vertical_(pose.mass_kg, step_s, subject.arms_hang_m, pose.cell_noise_n,
-                config.height_posture) {
+                config.height_posture_m) {
   for (HorizontalCom& axis : horizontal_) axis.KeepLag(lag_steps_);
   for (HorizontalCom& axis : travelling_) axis.KeepLag(lag_steps_);
   vertical_.KeepLag(lag_steps_);
+  vertical_.Start(pose.mean_loads);
   Begin(0.5 * (pose.p_WP_m[0] + pose.p_WP_m[1]).head<2>());
   estimate_.p_WC_m << pose.cop_m.x(), pose.cop_m.y(), com_height_m_;
 }
@@ -72,7 +71,6 @@ void BestEstimator::Begin(const Eigen::Vector2d& centre_m) {
     horizontal_[i].Start(pose_.cop_m(axis), centre_m(axis));
     travelling_[i].Start(pose_.cop_m(axis), centre_m(axis));
   }
-  vertical_.Start(pose_.mean_loads);
   estimate_.angular_momentum_kgm2ps.setZero();
   estimate_.angular_momentum_variance.setZero();
 }
@@ -164,10 +162,10 @@ void BestEstimator::Report(const ContactFrame& contacts, bool sees_posture) {
   const auto lagged = vertical_.Height(lag_steps_);
   estimate_.p_WC_m.z() = com_height_m_ + std::clamp(lagged.mean, -2.0, 2.0);
   estimate_.position_variance_m2.z() = std::min(lagged.variance, kMostVarianceM2);
-  const auto velocity = vertical_.output().Velocity();
+  const auto velocity = vertical_.Velocity();
   estimate_.v_WC_mps.z() = velocity.mean;
   estimate_.velocity_variance_m2ps2.z() = std::min(velocity.variance, kMostVarianceM2ps2);
-  estimate_.a_WC_mps2.z() = vertical_.output().acceleration_mps2();
+  estimate_.a_WC_mps2.z() = vertical_.acceleration_mps2();
 }
 
 void BestEstimator::AdvanceAngular(const ContactFrame& contacts) {

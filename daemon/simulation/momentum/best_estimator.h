@@ -8,7 +8,7 @@
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contacts.h"
 #include "daemon/simulation/momentum/estimate.h"
-#include "daemon/simulation/momentum/height_hypotheses.h"
+#include "daemon/simulation/momentum/height_models.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
 
 namespace footing::momentum {
@@ -17,18 +17,17 @@ namespace footing::momentum {
 HorizontalPrior ForwardPrior();
 HorizontalPrior LateralPrior();
 
-/// How postures are wrong about the place of C along the lateral axis and upwards
-/// (docs/momentum.md): plain ones are the mean of all poses, learned ones were found to go with
-/// hands and feet.
+/// How postures are wrong about the place of C along the lateral axis (docs/momentum.md).
 PostureError PlainLateralPosture();
-PostureError PlainHeightPosture();
-PostureError LearnedHeightPosture();
+
+/// Standard deviation of the height by a learned posture that shows it, m.
+inline constexpr double kLearnedPostureM = 0.03;
 
 struct BestConfig {
   HorizontalPrior forward = ForwardPrior();
   HorizontalPrior lateral = LateralPrior();
   PostureError lateral_posture = PlainLateralPosture();
-  PostureError height_posture = PlainHeightPosture();
+  double height_posture_m = 0;    ///< 0: postures are not asked for the height.
   double lag_s = 0;               ///< 0 to 0.2: positions of C come this much later, and better.
   double angular_memory_s = 1.0;  ///< The angular momentum leaks away in this time.
 };
@@ -40,8 +39,8 @@ struct PostureCom {
   Eigen::Vector3d likely_W_m = Eigen::Vector3d::Zero();
 };
 
-/// Our momentum: inverted-pendulum filters for the horizontal centre of mass and a table of
-/// hypotheses for the vertical one, from the contacts and the postures of a frame. A plain value
+/// Our momentum: inverted-pendulum filters for the horizontal centre of mass and several
+/// models for the vertical one, from the contacts and the postures of a frame. A plain value
 /// that allocates nothing.
 class BestEstimator {
  public:
@@ -53,7 +52,7 @@ class BestEstimator {
   const Estimate& Advance(const ContactFrame& contacts,
                           const std::optional<PostureCom>& posture = std::nullopt);
   const Estimate& estimate() const { return estimate_; }
-  const HeightHypotheses& vertical() const { return vertical_; }
+  const HeightModels& vertical() const { return vertical_; }
   /// Weighed in the T-pose, and again where what came after contradicts that.
   double mass_kg() const { return vertical_.mass_kg(); }
 
@@ -77,7 +76,7 @@ class BestEstimator {
   int lag_steps_;
   std::array<HorizontalCom, 2> horizontal_;
   std::array<HorizontalCom, 2> travelling_;
-  HeightHypotheses vertical_;
+  HeightModels vertical_;
   Estimate estimate_;
 };
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "daemon/simulation/momentum/cell_play.h"
 #include "daemon/simulation/momentum/contact_loads.h"
-#include "daemon/simulation/momentum/vertical_com.h"
 
 namespace footing::momentum {
 

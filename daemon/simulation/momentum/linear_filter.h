@@ -96,6 +96,34 @@ class LinearFilter {
     return {slot.mean, slot.variance};
   }
 
+  /// State i is no longer known: its mean is 0, with that variance.
+  void Forget(int i, double variance) {
+    x_(i) = 0;
+    p_.row(i).setZero();
+    p_.col(i).setZero();
+    p_(i, i) = variance;
+    for (std::size_t k = 0; k < Used(); ++k) slots_[k].cross(i) = 0;
+  }
+
+  /// This filter or another one that remembers the same steps, with weights `mine` and `theirs`
+  /// (not negative, their sum positive): the first two moments of the mixture.
+  void Merge(double mine, const LinearFilter& other, double theirs) {
+    const double share = theirs / (mine + theirs);
+    const Vector apart = other.x_ - x_;
+    for (std::size_t k = 0; k < Used(); ++k) {
+      Slot& slot = slots_[k];
+      const Slot& from = other.slots_[k];
+      const double off = from.mean - slot.mean;
+      slot.cross +=
+          share * (from.cross - slot.cross) + share * (1 - share) * off * apart.transpose();
+      slot.variance += share * (from.variance - slot.variance) + share * (1 - share) * off * off;
+      slot.mean += share * off;
+    }
+    p_ += share * (other.p_ - p_) + share * (1 - share) * apart * apart.transpose();
+    x_ += share * apart;
+    Symmetrise();
+  }
+
   const Vector& x() const { return x_; }
   const Matrix& p() const { return p_; }
   Scalar Of(const Row& h) const { return {h * x_, (h * p_ * h.transpose())(0)}; }
@@ -170,11 +198,6 @@ struct PostureError {
   double spread_m = 0;  ///< Standard deviation of the slow error; 0: postures are not asked.
   double time_s = 1;    ///< Its correlation time.
   double white_m = 0.01;
-  /// Share of looks in which it is right to `right_m`; in the others, as in squats, to `spread_m`.
-  /// It then is the anchor of the height, in place of what upright bodies have, and no state. 0: it
-  /// is a first-order process.
-  double right_share = 0;
-  double right_m = 0.03;
 };
 
 }  // namespace footing::momentum

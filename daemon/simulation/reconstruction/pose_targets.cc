@@ -102,7 +102,7 @@ BestEstimate::BestEstimate(const SubjectModel& model, const Options& options)
 void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
   momentum::BestConfig config;
   config.lag_s = options_.lag_steps() * options_.step_s();
-  if (!model_->posture.empty()) config.height_posture = momentum::LearnedHeightPosture();
+  if (!model_->posture.empty()) config.height_posture_m = momentum::kLearnedPostureM;
   contacts_.emplace(model_->subject, pose, options_.step_s());
   estimator_.emplace(config, model_->subject, pose, options_.step_s());
   likely_.Start();
