@@ -148,6 +148,10 @@ PoseRegression::Workspace PoseRegression::MakeWorkspace() const {
           Eigen::VectorXf::Zero(wave_weights.StripRows())};
 }
 
+Eigen::VectorXd PoseRegression::Scaled(const Features::Values& features) const {
+  return (features - mean).cwiseProduct(scale).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
+}
+
 void PoseRegression::Predict(const Features::Values& features, Workspace& workspace,
                              Eigen::VectorXd& q) const {
   workspace.scaled =
@@ -356,9 +360,89 @@ Result<void> ReadPaperArm(const NamedModel& named, Models& models) {
 
 }  // namespace
 
+void Correct(const PersonCorrection& correction, PoseRegression& regression,
+             pose::PoseBasis& rest) {
+  regression.offset += correction.offset;
+  regression.weights += correction.weights;
+  if (correction.wave_weights.size() > 0) {
+    regression.wave_weights =
+        StripMatrix(regression.wave_weights.Dense() + correction.wave_weights.cast<float>());
+  }
+  rest =
+      ToBasis(rest.mean, correction.scale, correction.rest_components, correction.rest_variances);
+}
+
+model::Digest BaseDigest(const model::Model& model) {
+  std::string bytes;
+  for (const model::Tensor& tensor : model.tensors) {
+    bytes += tensor.name;
+    const auto* values = reinterpret_cast<const char*>(tensor.values.data());
+    bytes.append(values, tensor.values.size() * sizeof(float));
+  }
+  return model::Sha256(bytes);
+}
+
+namespace {
+
+/// Correction of the likely pose, or of the posture with its prefix.
+Result<PersonCorrection> ReadCorrection(const NamedModel& named, const std::string& prefix,
+                                        const PoseRegression& regression) {
+  const auto dof = static_cast<std::uint32_t>(regression.offset.size());
+  const auto waves = static_cast<std::uint32_t>(regression.phases.size());
+  constexpr auto kFeatures = static_cast<std::uint32_t>(Features::kCount);
+  const auto read = [&](const char* name, std::uint32_t rows, std::uint32_t columns) {
+    return Matrix(named.model, prefix + name, rows, columns, named.origin);
+  };
+  const auto scale = read("scale", dof, 1);
+  if (!scale) return scale.error();
+  const auto offset = read("regression_offset", dof, 1);
+  if (!offset) return offset.error();
+  const auto weights = read("regression_weights", dof, kFeatures);
+  if (!weights) return weights.error();
+  const auto components = read("rest_components", dof, dof);
+  if (!components) return components.error();
+  const auto variances = read("rest_variances", dof, 1);
+  if (!variances) return variances.error();
+  PersonCorrection correction{offset->col(0), *weights,    {},
+                              scale->col(0),  *components, variances->col(0)};
+  if (!(correction.scale.minCoeff() > 0)) {
+    return InvalidData(named.origin + ": its tensor " + prefix + "scale is not positive");
+  }
+  if (waves == 0) return correction;
+  const auto wave_weights = read("wave_weights", dof, waves);
+  if (!wave_weights) return wave_weights.error();
+  correction.wave_weights = *wave_weights;
+  return correction;
+}
+
+/// `pose`: the model that the person's corrects; null where there is none.
+Result<void> ReadPerson(const NamedModel& named, const NamedModel* pose, Models& models) {
+  const auto& data = named.model.provenance.data;
+  if (pose == nullptr || models.posture.empty()) {
+    return UsageError(named.origin +
+                      ": a person's model needs the pose model that it was made "
+                      "with; give it too");
+  }
+  if (data.empty() || data.front().sha256 != BaseDigest(pose->model)) {
+    return InvalidData(named.origin + ": was made with another pose model than " + pose->origin +
+                       "; make it again from its recording (footing-train person)");
+  }
+  auto likely = ReadCorrection(named, "", models.regression);
+  if (!likely) return likely.error();
+  auto posture = ReadCorrection(named, kPosturePrefix, models.posture.regression);
+  if (!posture) return posture.error();
+  Correct(*likely, models.regression, models.rest);
+  Correct(*posture, models.posture.regression, models.posture.rest);
+  return {};
+}
+
+}  // namespace
+
 Result<Models> MakeModels(const std::vector<NamedModel>& models) {
   Models made;
   std::vector<std::string> kinds;
+  const NamedModel* pose = nullptr;
+  const NamedModel* person = nullptr;
   for (const NamedModel& named : models) {
     const std::string& kind = named.model.kind;
     if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
@@ -368,20 +452,27 @@ Result<Models> MakeModels(const std::vector<NamedModel>& models) {
     if ((kind == "basis" || kind == "pose") && !made.dofs.empty()) {
       return UsageError(named.origin + ": a pose model brings its basis; give one of the two");
     }
-    const auto read = kind == "basis"  ? ReadPostures(named, made)
-                      : kind == "pose" ? ReadRegression(named, made)
-                      : kind == "com"  ? ReadNetworks(named, made)
-                      : kind == "arm"  ? ReadArm(named, made)
-                      : kind == "arm_paper"
-                          ? ReadPaperArm(named, made)
-                          : Result<void>(InvalidData(
-                                named.origin + ": a model of kind " + kind +
-                                "; the pose engine takes basis, pose, com, arm and arm_paper"));
+    if (kind == "person") person = &named;
+    if (kind == "pose") pose = &named;
+    const auto read =
+        kind == "person"  ? Result<void>()
+        : kind == "basis" ? ReadPostures(named, made)
+        : kind == "pose"  ? ReadRegression(named, made)
+        : kind == "com"   ? ReadNetworks(named, made)
+        : kind == "arm"   ? ReadArm(named, made)
+        : kind == "arm_paper"
+            ? ReadPaperArm(named, made)
+            : Result<void>(InvalidData(
+                  named.origin + ": a model of kind " + kind +
+                  "; the pose engine takes basis, pose, com, arm, arm_paper and person"));
     if (!read) return read.error();
   }
   if (made.dofs.empty()) {
     return UsageError(
         "no model of kind pose or basis: train one with footing-train pose or footing-train basis");
+  }
+  if (person != nullptr) {
+    if (const auto read = ReadPerson(*person, pose, made); !read) return read.error();
   }
   return made;
 }

@@ -93,6 +93,7 @@ struct PoseRegression {
   };
   Workspace MakeWorkspace() const;
   bool empty() const { return offset.size() == 0; }
+  Eigen::VectorXd Scaled(const Features::Values& features) const;
   /// Writes the pose to `q`, of its size.
   void Predict(const Features::Values& features, Workspace& workspace, Eigen::VectorXd& q) const;
 };
@@ -115,6 +116,16 @@ struct LikelyPoses {
   bool empty() const { return regression.empty(); }
 };
 
+/// Changes of a regression and of its errors by one person's own motion (docs/models.md).
+struct PersonCorrection {
+  Eigen::VectorXd offset;           ///< Added to those of the regression,
+  Eigen::MatrixXd weights;          ///< of its scaled features,
+  Eigen::MatrixXd wave_weights;     ///< and of its waves.
+  Eigen::VectorXd scale;            ///< By which an entry of a pose counts in the components.
+  Eigen::MatrixXd rest_components;  ///< Rows; in place of those of the regression's errors.
+  Eigen::VectorXd rest_variances;
+};
+
 /// Learned models of how people move (docs/models.md).
 struct Models {
   pose::PoseBasis basis;
@@ -135,9 +146,15 @@ struct Models {
   std::optional<arm_network::ArmNetwork> paper_arm;
 };
 
-/// At most one model of each kind: "basis" or "pose" is necessary, "com", "arm" and
-/// "arm_paper" are not. Errors
-/// name the file.
+/// The regression and its errors as the person's correction has them. Sizes must fit.
+void Correct(const PersonCorrection& correction, PoseRegression& regression, pose::PoseBasis& rest);
+
+/// Digest of all values of a model, by which a person's model names the one that it corrects.
+model::Digest BaseDigest(const model::Model& model);
+
+/// At most one model of each kind: "basis" or "pose" is necessary, "com", "arm", "arm_paper" and
+/// "person" are not. A person's model needs the very pose model that it was made with. Errors name
+/// the file.
 Result<Models> MakeModels(const std::vector<NamedModel>& models);
 
 }  // namespace footing::reconstruction
