@@ -72,7 +72,7 @@ class PoseRerun {
  public:
   /// With the recorded lag, or with `lag_s` in its place.
   static Result<std::unique_ptr<PoseRerun>> Create(const PoseRecording& recording,
-                                                   const std::string& data_folder,
+                                                   const ModelFolders& folders,
                                                    std::optional<double> lag_s = std::nullopt) {
     const v1::Character& shown = recording.frames.begin()->second.characters(0);
     reconstruction::Options options;
@@ -80,7 +80,7 @@ class PoseRerun {
         shown.body().mode() == "paper" ? reconstruction::Mode::kPaper : reconstruction::Mode::kBest;
     options.rate_hz = PoseLine::kRateHz;
     options.lag_s = lag_s.value_or(shown.body().lag_s());
-    auto models = pose_service::LoadPoseModels(data_folder, options.mode);
+    auto models = pose_service::PoseModels::Load(folders.data, options.mode, folders.subjects);
     if (!models) return models.error();
     std::unique_ptr<PoseRerun> rerun(new PoseRerun(std::move(models).value(), options));
     std::uint64_t number = 1;
@@ -138,7 +138,7 @@ class PoseRerun {
   }
 
  private:
-  PoseRerun(reconstruction::Models models, const reconstruction::Options& options)
+  PoseRerun(pose_service::PoseModels models, const reconstruction::Options& options)
       : models_(std::move(models)), options_(options), lag_s_(options.lag_s) {}
 
   /// With the lag of the best mode; the paper mode has none.
@@ -152,10 +152,12 @@ class PoseRerun {
     known_[number] = {subject, options_};
     const auto body = pose_service::MakeSubjectBody(subject);
     if (!body) return body.error();
-    return pose_service::MakeSubjectRun(number, *body, models_, options_);
+    const auto models = models_.Of(subject.code);
+    if (!models) return models.error();
+    return pose_service::MakeSubjectRun(number, *body, *models, options_);
   }
 
-  const reconstruction::Models models_;
+  const pose_service::PoseModels models_;
   reconstruction::Options options_;  ///< Options of the newest.
   double lag_s_;
   struct Known {
@@ -195,15 +197,14 @@ bool IsPoseRecording(const std::vector<v1::Tick>& ticks) {
   return false;
 }
 
-Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks,
-                                const std::string& data_folder) {
+Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks, const ModelFolders& folders) {
   const PoseRecording recording = GatherPose(ticks);
   EngineReplay result;
   if (recording.frames.empty()) return result;
   if (const auto whole = CheckFirstStep(recording.frames.begin()->first); !whole) {
     return whole.error();
   }
-  auto rerun = PoseRerun::Create(recording, data_folder);
+  auto rerun = PoseRerun::Create(recording, folders);
   if (!rerun) return rerun.error();
   const auto ran =
       EachFrame(recording, **rerun, result.last_step,
@@ -305,7 +306,7 @@ v1::CharacterFrame WithLag(const v1::CharacterFrame& recorded, const v1::Charact
 }  // namespace
 
 Result<std::uint64_t> SmoothPose(const std::string& path, const std::string& out, double lag_s,
-                                 const std::string& data_folder, bool replace) {
+                                 const ModelFolders& folders, bool replace) {
   std::error_code error;
   if (std::filesystem::equivalent(path, out, error)) {
     return UsageError("the new recording may not replace " + path + "; name another with --out");
@@ -320,7 +321,7 @@ Result<std::uint64_t> SmoothPose(const std::string& path, const std::string& out
   if (const auto whole = CheckFirstStep(recording.frames.begin()->first); !whole) {
     return Error{whole.error().kind, path + ": " + whole.error().message};
   }
-  auto rerun = PoseRerun::Create(recording, data_folder, lag_s);
+  auto rerun = PoseRerun::Create(recording, folders, lag_s);
   if (!rerun) return rerun.error();
   std::uint64_t last_step = 0;
   std::map<std::uint64_t, v1::CharacterFrame> frames;
@@ -373,7 +374,7 @@ namespace {
 struct ReplayOptions {
   std::string file;
   std::string track;  ///< Empty: the recorded one.
-  std::string data_folder;
+  ModelFolders folders;
 };
 
 /// The interface that the first recorded inputs name.
@@ -387,9 +388,9 @@ mapping::InterfaceOptions InterfaceOf(const std::vector<v1::Tick>& ticks) {
 
 Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks,
                                   const ReplayOptions& options) {
-  if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.data_folder);
+  if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.folders);
   const mapping::InterfaceOptions interface = InterfaceOf(ticks);
-  engine_files::Wish wish{.interface = interface.interface, .data_folder = options.data_folder};
+  engine_files::Wish wish{.interface = interface.interface, .data_folder = options.folders.data};
   wish.gaits = gait_service::GaitsIn(ConfigOf(ticks));
   const bool named_track = !options.track.empty();
   if (named_track) wish.track = options.track;
@@ -398,7 +399,7 @@ Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks,
   return ReplayBiped(ticks, {.texts = *texts,
                              .config = {.interface = interface},
                              .named_track = named_track,
-                             .data_folder = options.data_folder});
+                             .data_folder = options.folders.data});
 }
 
 int Run(const ReplayOptions& options) {
@@ -429,6 +430,14 @@ int Run(const ReplayOptions& options) {
   return features.equal == features.compared && engine.equal == engine.frames ? 0 : 1;
 }
 
+void AddModelFolders(CLI::App& command, ModelFolders& folders) {
+  command.add_option("--data-folder", folders.data,
+                     "Folder of the pose engine's models (default: the installed ones)");
+  command.add_option(
+      "--subject-models", folders.subjects,
+      "Folder of the subjects' own models, CODE.fmodel, if the pose engine had them");
+}
+
 }  // namespace
 
 void AddReplayCommand(CLI::App& app, Shared& shared) {
@@ -440,14 +449,14 @@ void AddReplayCommand(CLI::App& app, Shared& shared) {
   command->add_option(
       "--track", options->track,
       "Track of the simulation in place of the recorded one: a name, or a JSON file");
-  command->add_option("--data-folder", options->data_folder,
-                      "Folder of the pose engine's models (default: the installed ones)");
+  AddModelFolders(*command, options->folders);
   command->callback([options, &shared] { shared.exit_code = Run(*options); });
 }
 
 void AddSmoothCommand(CLI::App& app, Shared& shared) {
   struct Options {
-    std::string file, out, data_folder;
+    std::string file, out;
+    ModelFolders folders;
     double lag_ms = 200;
     bool force = false;
   };
@@ -461,8 +470,7 @@ void AddSmoothCommand(CLI::App& app, Shared& shared) {
       ->add_option("--lag-ms", options->lag_ms,
                    "Time after a pose that it may use, ms: 0, 100 or 200 (default 200)")
       ->check(CLI::IsMember({0, 100, 200}));
-  command->add_option("--data-folder", options->data_folder,
-                      "Folder of the pose engine's models (default: the installed ones)");
+  AddModelFolders(*command, options->folders);
   command->add_flag("--force", options->force, "Overwrite an existing recording");
   command->footer(
       "Examples:\n"
@@ -470,7 +478,7 @@ void AddSmoothCommand(CLI::App& app, Shared& shared) {
       "  footing-log export smooth.mcap --format mot --out smooth/");
   command->callback([options, &shared] {
     const auto frames = SmoothPose(options->file, options->out, options->lag_ms / 1000,
-                                   options->data_folder, options->force);
+                                   options->folders, options->force);
     if (!frames) {
       shared.exit_code = cli::Report(frames.error());
       return;

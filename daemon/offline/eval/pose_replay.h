@@ -16,11 +16,17 @@ namespace footing::eval {
 /// The ticks are of the pose engine.
 bool IsPoseRecording(const std::vector<v1::Tick>& ticks);
 
+/// Where the pose engine's models are.
+struct ModelFolders {
+  std::string data;      ///< Empty: the installed ones.
+  std::string subjects;  ///< Subjects' own models, CODE.fmodel; empty: without.
+};
+
 /// Gives the applied inputs of footing-sim's ticks to a new pose engine at their steps, and
 /// compares whole frames: everything but the CPU time, the overruns and the texts for people. Mode,
-/// lag and subjects are those of the recording; the models come from `data_folder` (empty: the
-/// installed ones). InvalidData when the recording does not begin with the engine's first step.
-Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks, const std::string& data_folder);
+/// lag and subjects are those of the recording; the models come from `folders`. InvalidData when
+/// the recording does not begin with the engine's first step.
+Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks, const ModelFolders& folders);
 
 /// The ticks of one server out of a recording, in their order, without snapshots.
 struct Recorded {
@@ -36,7 +42,7 @@ Result<Recorded> ReadRecorded(const std::string& path);
 /// lag: the pose of a frame is that of `lag_s` before it and uses all that was measured until then,
 /// as with footing-sim --lag-ms. Returns the number of its frames. InvalidData as of ReplayPose.
 Result<std::uint64_t> SmoothPose(const std::string& path, const std::string& out, double lag_s,
-                                 const std::string& data_folder, bool replace);
+                                 const ModelFolders& folders, bool replace);
 
 /// `footing-eval smooth FILE.mcap --out FILE.mcap`.
 void AddSmoothCommand(CLI::App& app, Shared& shared);

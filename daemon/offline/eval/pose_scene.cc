@@ -193,7 +193,7 @@ Result<reconstruction::NamedModel> ReadModel(const std::string& path, const std:
   if (!bytes) return bytes.error();
   auto model = wire::FromModelFile(*bytes, path);
   if (!model) return model.error();
-  if (!same_person) {
+  if (!same_person && model->kind != "person") {
     const auto fresh = model::CheckNotTrainedOn(*model, SubjectOf(motion), path);
     if (!fresh) return fresh.error();
   }

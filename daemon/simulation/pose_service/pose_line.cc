@@ -1,12 +1,14 @@
 #include "daemon/simulation/pose_service/pose_line.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "common/model/model.h"
 #include "common/runtime/clock.h"
 #include "common/runtime/files.h"
 #include "common/wire/model_file.h"
@@ -21,6 +23,9 @@ namespace footing::pose_service {
 void Config::Bind(config::Binder& binder) {
   binder.Text("subject", subject,
               "Subject file of the pose engine: code, height_m, mass_kg, foot_length_m");
+  binder.Text(
+      "subject_models", subject_models,
+      "Folder of the subjects' own models, CODE.fmodel (default: that of the subject file)");
   binder.Text("mode", mode, "Reconstruction mode of the pose engine: best or paper");
   binder.TextList(
       "leave_out", leave_out,
@@ -53,6 +58,12 @@ std::string EffectiveConfig(const serving::Config& common, const Config& config)
       .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+std::string SubjectModelsOf(const Config& config) {
+  if (!config.subject_models.empty() || config.subject.empty()) return config.subject_models;
+  const auto folder = std::filesystem::path(config.subject).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common,
@@ -71,24 +82,25 @@ Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common
   }
   options.rate_hz = kRateHz;
   options.lag_s = 1e-3 * static_cast<double>(config.lag_ms);
-  auto models = LoadPoseModels(common.data_folder, options.mode);
+  auto models = PoseModels::Load(common.data_folder, options.mode, SubjectModelsOf(config));
   if (!models) return models.error();
-  auto run = MakeSubjectRun(1, *body, *models, options);
+  const auto own = models->Of(first.code);
+  if (!own) return own.error();
+  auto run = MakeSubjectRun(1, *body, *own, options);
   if (!run) return run.error();
   return std::unique_ptr<PoseLine>(new PoseLine(common, config, std::move(models).value(),
                                                 {1, first, *body, options}, std::move(run).value(),
                                                 wake_descriptor));
 }
 
-PoseLine::PoseLine(const serving::Config& common, const Config& config,
-                   reconstruction::Models models, Known first, std::unique_ptr<SubjectRun> run,
-                   int wake_descriptor)
+PoseLine::PoseLine(const serving::Config& common, const Config& config, PoseModels models,
+                   Known first, std::unique_ptr<SubjectRun> run, int wake_descriptor)
     : effective_config_(EffectiveConfig(common, config)),
       models_(std::move(models)),
       known_{std::move(first)},
       shown_number_(known_.front().number),
       thread_(PoseRun(std::move(run), kRateHz, subjects_), 1 / kRateHz, 1, wake_descriptor),
-      sensors_(common.rig, thread_.inputs(), models_.arm, models_.paper_arm) {
+      sensors_(common.rig, thread_.inputs(), models_.common().arm, models_.common().paper_arm) {
   sensors_.TakeMode(known_.front().options.mode);
   sensors_.TakeSubject(shown_number_);
 }
@@ -145,7 +157,9 @@ v1::CommandResult PoseLine::Next(Known next, const std::string& command) {
     return Answer(false, command + ": the one before is not in place yet; try again");
   }
   next.number = known_.back().number + 1;
-  auto run = MakeSubjectRun(next.number, next.body, models_, next.options);
+  const auto models = models_.Of(next.subject.code);
+  if (!models) return Answer(false, command + ": " + models.error().message);
+  auto run = MakeSubjectRun(next.number, next.body, *models, next.options);
   if (!run) return Answer(false, command + ": " + run.error().message);
   (*run)->same_person = next.same_person;
   if (!subjects_.next.Push(std::move(run).value())) {
@@ -207,24 +221,29 @@ std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
 
 namespace {
 
+Result<reconstruction::NamedModel> ReadModelFile(const std::string& path) {
+  const auto bytes = config::ReadTextFile(path, model::kMostFileBytes);
+  if (!bytes) return bytes.error();
+  auto model = wire::FromModelFile(*bytes, path);
+  if (!model) return model.error();
+  return reconstruction::NamedModel{path, std::move(model).value()};
+}
+
 Result<reconstruction::NamedModel> Load(const char* name, const std::string& data_folder) {
   const auto path = config::FindDataFile(name, data_folder);
   if (!path) {
     return Failure(path.error().message +
                    " with --set data_folder=..., or make it with footing-train (docs/models.md)");
   }
-  const auto bytes = config::ReadTextFile(*path);
-  if (!bytes) return bytes.error();
-  auto model = wire::FromModelFile(*bytes, *path);
-  if (!model) return model.error();
-  return reconstruction::NamedModel{*path, std::move(model).value()};
+  return ReadModelFile(*path);
 }
 
 }  // namespace
 
-Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
-                                              reconstruction::Mode mode) {
-  std::vector<reconstruction::NamedModel> models;
+Result<PoseModels> PoseModels::Load(const std::string& data_folder, reconstruction::Mode mode,
+                                    const std::string& subjects_folder) {
+  PoseModels models;
+  models.subjects_folder_ = subjects_folder;
   std::vector<const char*> names{kPoseFile};
   if (mode == reconstruction::Mode::kPaper || config::FindDataFile(kComFile, data_folder)) {
     names.push_back(kComFile);
@@ -233,11 +252,40 @@ Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
     if (config::FindDataFile(name, data_folder)) names.push_back(name);
   }
   for (const char* name : names) {
-    auto model = Load(name, data_folder);
+    auto model = pose_service::Load(name, data_folder);
     if (!model) return model.error();
-    models.push_back(std::move(model).value());
+    models.files_.push_back(std::move(model).value());
   }
-  return reconstruction::MakeModels(models);
+  auto common = reconstruction::MakeModels(models.files_);
+  if (!common) return common.error();
+  models.common_ = *std::move(common);
+  return models;
+}
+
+std::string PoseModels::OwnFileOf(const std::string& code) const {
+  // A recording may name anything; only a name within the folder is one of its files.
+  const bool named = !code.empty() && code.find('/') == std::string::npos;
+  if (subjects_folder_.empty() || !named) return "";
+  const auto path = std::filesystem::path(subjects_folder_) / (code + ".fmodel");
+  std::error_code error;
+  return std::filesystem::exists(path, error) ? path.string() : "";
+}
+
+Result<reconstruction::Models> PoseModels::Of(const std::string& code) const {
+  const std::string path = OwnFileOf(code);
+  if (path.empty()) return common_;
+  auto own = ReadModelFile(path);
+  if (!own) return own.error();
+  if (const auto kind = model::CheckKind(own->model, "person", path); !kind) return kind.error();
+  const auto& subjects = own->model.provenance.subjects;
+  if (subjects.size() != 1 || model::SubjectName(subjects[0]) != model::SubjectName(code)) {
+    return InvalidData(path + ": is of " + (subjects.empty() ? "nobody" : subjects[0]) +
+                       ", not of " + code + "; make it with footing-train person --subject " +
+                       code);
+  }
+  std::vector<reconstruction::NamedModel> files = files_;
+  files.push_back(*std::move(own));
+  return reconstruction::MakeModels(files);
 }
 
 namespace {

@@ -23,7 +23,9 @@ namespace footing::pose_service {
 
 /// Settings of the pose engine's service.
 struct Config {
-  std::string subject;        ///< Subject file; empty: nobody has been named.
+  std::string subject;  ///< Subject file; empty: nobody has been named.
+  /// Folder of the subjects' own models, CODE.fmodel; empty: that of the subject file.
+  std::string subject_models;
   std::string mode = "best";  ///< "best" or "paper".
   std::int64_t lag_ms = 0;    ///< 0, 100 or 200.
   /// Parts of the mode that are left out (reconstruction::LeaveOut).
@@ -34,6 +36,30 @@ struct Config {
 
 /// Usage error that lists what there is when mode or lag is none of them.
 Result<void> Check(const Config& config);
+
+/// The models of the pose engine, and what a subject's own one makes of them.
+class PoseModels {
+ public:
+  /// From `data_folder` (empty: the installed one): the prior of poses, and the networks of the
+  /// horizontal COM, which only paper mode needs. One that is missing is an error that names it:
+  /// nothing else takes its place. Only the arms' models may be missing; Wiimotes are not followed
+  /// then, and said so. `subjects_folder`: of the subjects' own models; empty: they have none.
+  static Result<PoseModels> Load(const std::string& data_folder, reconstruction::Mode mode,
+                                 const std::string& subjects_folder);
+
+  const reconstruction::Models& common() const { return common_; }
+  /// Those that a subject is reconstructed with: the common ones, or as SUBJECTS/CODE.fmodel
+  /// changes them, where there is such a file. InvalidData, which names the file, when it was made
+  /// with another pose model or is of another person.
+  Result<reconstruction::Models> Of(const std::string& code) const;
+  /// File of a subject's own model; empty: none.
+  std::string OwnFileOf(const std::string& code) const;
+
+ private:
+  std::string subjects_folder_;
+  std::vector<reconstruction::NamedModel> files_;
+  reconstruction::Models common_;
+};
 
 /// The io side of the pose engine: board cells and hands in, a reconstructed person out (see
 /// Serving).
@@ -75,8 +101,8 @@ class PoseLine {
     bool same_person = false;  ///< As the one before, in another mode.
   };
 
-  PoseLine(const serving::Config& common, const Config& config, reconstruction::Models models,
-           Known first, std::unique_ptr<SubjectRun> run, int wake_descriptor);
+  PoseLine(const serving::Config& common, const Config& config, PoseModels models, Known first,
+           std::unique_ptr<SubjectRun> run, int wake_descriptor);
   v1::CommandResult TakeSubject(const v1::SetSubject& message);
   v1::CommandResult TakeMode(const v1::SetPoseMode& message);
   /// The next one to be reconstructed, or the same person in another mode; `command` names it.
@@ -85,7 +111,7 @@ class PoseLine {
 
   const std::string world_ = "boards";
   const std::string effective_config_;  ///< JSON.
-  const reconstruction::Models models_;
+  const PoseModels models_;
   std::deque<Known> known_;  ///< Oldest first; the newest is the one asked for last.
   std::uint64_t shown_number_;
   SubjectExchange subjects_;
@@ -99,13 +125,6 @@ inline constexpr const char* kPoseFile = "pose.fmodel";
 inline constexpr const char* kComFile = "com.fmodel";
 inline constexpr const char* kArmFile = "arm.fmodel";
 inline constexpr const char* kPaperArmFile = "arm_paper.fmodel";
-
-/// The models of the pose engine, from `data_folder` (empty: the installed one): the prior of
-/// poses, and the networks of the horizontal COM, which only paper mode needs. One that is missing
-/// is an error that names it: nothing else takes its place. Only the arms' models may be missing;
-/// Wiimotes are not followed then, and said so.
-Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
-                                              reconstruction::Mode mode);
 
 /// The inputs of the pose engine as they took effect, for recordings.
 v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject,
