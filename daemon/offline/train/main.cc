@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
       "  footing-train basis --motions mocap/ --out basis.fmodel\n"
       "  footing-train pose --motions mocap/ --exclude 14 --out pose.fmodel\n"
       "  footing-train pose --motions mocap/ --recording me.mcap --motion me.bvh --out me.fmodel\n"
+      "  footing-train person --recording p07.mcap --subject p07 --out p07.fmodel\n"
       "  footing-train arm --motions mocap/ --exclude 14 --out arm.fmodel\n"
       "  mpirun -n 4 footing-train people --motions mocap/ --json\n"
       "  footing-train mlp --data sway.csv --inputs 20 --out mlp.fmodel --mse-goal 1e-5");
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
   footing::train::AddComCommand(*app, shared);
   footing::train::AddMlpCommand(*app, shared);
   footing::train::AddPeopleCommand(*app, shared);
+  footing::train::AddPersonCommand(*app, shared);
   footing::train::AddPoseCommand(*app, shared);
   const auto ranks = footing::ranks::Ranks::Join();
   if (!ranks) return footing::cli::Report(ranks.error());

@@ -36,6 +36,7 @@ void AddCascadeCommand(CLI::App& app, Shared& shared);
 void AddComCommand(CLI::App& app, Shared& shared);
 void AddMlpCommand(CLI::App& app, Shared& shared);
 void AddPeopleCommand(CLI::App& app, Shared& shared);
+void AddPersonCommand(CLI::App& app, Shared& shared);
 void AddPoseCommand(CLI::App& app, Shared& shared);
 
 /// Options of every subcommand that writes a model.
