@@ -37,28 +37,13 @@ Eigen::MatrixXd DesignOf(const PoseExamples& examples, const reconstruction::Pos
   return design;
 }
 
-/// How the groups of the design are penalised beside the offset: one way to correct.
-struct CorrectionShape {
-  double features = 0;  ///< 0: not used.
-  double waves = 0;
-};
-constexpr std::array kShapes{CorrectionShape{0, 0}, CorrectionShape{1, 0}, CorrectionShape{1, 1}};
 constexpr std::array kPenalties{1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0};
 
-Eigen::VectorXd GroupsOf(const reconstruction::PoseRegression& base, const CorrectionShape& shape) {
-  Eigen::VectorXd groups(1 + base.mean.size() + base.phases.size());
-  groups << 1, Eigen::VectorXd::Constant(base.mean.size(), shape.features),
-      Eigen::VectorXd::Constant(base.phases.size(), shape.waves);
-  return groups;
-}
-
-/// outputs x design, of these columns.
-Eigen::MatrixXd CorrectionRidge(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& moment,
-                                const Eigen::VectorXd& groups, double penalty) {
-  Eigen::MatrixXd penalised = groups.asDiagonal() * gram * groups.asDiagonal();
-  penalised.diagonal().array() += penalty;
-  const Eigen::MatrixXd right = groups.asDiagonal() * moment.transpose();
-  return (groups.asDiagonal() * penalised.llt().solve(right)).transpose();
+/// outputs x columns.
+Eigen::MatrixXd CorrectionRidge(Eigen::MatrixXd gram, const Eigen::MatrixXd& moment,
+                                double penalty) {
+  gram.diagonal().array() += penalty;
+  return gram.llt().solve(moment.transpose()).transpose();
 }
 
 struct PersonPiece {
@@ -86,16 +71,17 @@ std::vector<PersonPiece> PersonPiecesOf(const Eigen::MatrixXd& design,
   return pieces;
 }
 
-/// Errors of every piece, by a correction that has not seen it.
+/// Errors of every piece, by a correction that has not seen it; of the first columns of the design.
 std::vector<Eigen::MatrixXd> HeldOutErrors(const std::vector<PersonPiece>& pieces,
                                            const Eigen::MatrixXd& gram,
-                                           const Eigen::MatrixXd& moment,
-                                           const Eigen::VectorXd& groups, double penalty) {
+                                           const Eigen::MatrixXd& moment, double penalty) {
+  const Eigen::Index columns = gram.cols();
   std::vector<Eigen::MatrixXd> left;
   for (const PersonPiece& piece : pieces) {
     const Eigen::MatrixXd weights =
-        CorrectionRidge(gram - piece.gram, moment - piece.moment, groups, penalty);
-    left.push_back(piece.errors - weights * piece.design);
+        CorrectionRidge(gram - piece.gram.topLeftCorner(columns, columns),
+                        moment - piece.moment.leftCols(columns), penalty);
+    left.push_back(piece.errors - weights * piece.design.topRows(columns));
   }
   return left;
 }
@@ -150,15 +136,20 @@ ChosenWeights Choose(const std::vector<PersonPiece>& pieces,
     fitted.error = fitted.error_base;
     return chosen;
   }
-  for (const CorrectionShape& shape : kShapes) {
-    const Eigen::VectorXd groups = GroupsOf(base, shape);
+  // A constant, then the features with it, then all.
+  const Eigen::Index features = base.mean.size();
+  for (const Eigen::Index columns : {Eigen::Index{1}, 1 + features, gram.cols()}) {
+    const Eigen::MatrixXd part = gram.topLeftCorner(columns, columns);
+    const Eigen::MatrixXd part_moment = moment.leftCols(columns);
     for (const double penalty : kPenalties) {
-      auto held_out = HeldOutErrors(pieces, gram, moment, groups, penalty);
+      auto held_out = HeldOutErrors(pieces, part, part_moment, penalty);
       const double square = MeanSquareOf(held_out);
       if (!(square < best)) continue;
       best = square;
       fitted.penalty = penalty;
-      chosen = {CorrectionRidge(gram, moment, groups, penalty), std::move(held_out)};
+      chosen.errors = std::move(held_out);
+      chosen.weights.setZero();
+      chosen.weights.leftCols(columns) = CorrectionRidge(part, part_moment, penalty);
     }
   }
   fitted.error = std::sqrt(best);
