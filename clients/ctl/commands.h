@@ -57,6 +57,7 @@ void AddPairCommand(CLI::App& app, Shared& shared);        ///< pair
 void AddSetupCommand(CLI::App& app, Shared& shared);       ///< setup
 void AddLayoutCommand(CLI::App& app, Shared& shared);      ///< layout
 void AddAcceptanceCommand(CLI::App& app, Shared& shared);  ///< acceptance
+void AddMotionsCommand(CLI::App& app, Shared& shared);     ///< motions
 void AddPoseCommands(CLI::App& app, Shared& shared);       ///< t-pose, subject
 void AddTrialCommands(CLI::App& app, Shared& shared);      ///< trial
 void AddInterfaceCommand(CLI::App& app, Shared& shared);   ///< interface

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddSetupCommand(*app, shared);
   footing::ctl::AddLayoutCommand(*app, shared);
   footing::ctl::AddAcceptanceCommand(*app, shared);
+  footing::ctl::AddMotionsCommand(*app, shared);
   footing::ctl::AddPoseCommands(*app, shared);
   footing::ctl::AddTrialCommands(*app, shared);
   footing::ctl::AddInterfaceCommand(*app, shared);

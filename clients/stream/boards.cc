@@ -321,7 +321,8 @@ namespace {
 void AddMotion(CLI::App& command, StageOptions& stage) {
   command
       .add_option("--motion", stage.motion,
-                  "Motion: a built-in name (demo, quiet), a choreography script, or a BVH, AMC, "
+                  "Motion: a built-in name (demo, own_motion, quiet), a choreography script, or a "
+                  "BVH, AMC, "
                   "TRC or C3D file")
       ->required();
   sensor_options::AddMotionFile(command, stage.skeleton, stage.bvh_unit_m);

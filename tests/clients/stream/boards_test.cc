@@ -197,7 +197,7 @@ TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
   const auto unknown = PlanBoards(options_, {});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().kind, ErrorKind::kUsage);
-  EXPECT_THAT(unknown.error().message, HasSubstr("demo quiet"));
+  EXPECT_THAT(unknown.error().message, HasSubstr("demo own_motion quiet"));
   options_.stage.motion = "/nonexistent/walk.bvh";
   EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("/nonexistent/walk.bvh"));
 }

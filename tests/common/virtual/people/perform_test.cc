@@ -53,7 +53,7 @@ class CarriedMotion : public testing::TestWithParam<const char*> {
  protected:
   const Performed& made_ = Performed::Of(GetParam());
 };
-INSTANTIATE_TEST_SUITE_P(Scripts, CarriedMotion, testing::Values("demo", "quiet"),
+INSTANTIATE_TEST_SUITE_P(Scripts, CarriedMotion, testing::Values("demo", "own_motion", "quiet"),
                          [](const auto& one) { return std::string(one.param); });
 
 TEST_P(CarriedMotion, StaysWithinTheJointsLimits) {

@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Script, EveryCarriedNameIsAScriptThatBeginsAndEndsInTheTPose) {
-  EXPECT_THAT(BuiltInScriptNames(), testing::ElementsAre("demo", "quiet"));
+  EXPECT_THAT(BuiltInScriptNames(), testing::ElementsAre("demo", "own_motion", "quiet"));
   for (const std::string& name : BuiltInScriptNames()) {
     const auto script = BuiltInScript(name);
     ASSERT_TRUE(script) << script.error().message;
@@ -23,7 +23,7 @@ TEST(Script, EveryCarriedNameIsAScriptThatBeginsAndEndsInTheTPose) {
   const auto none = BuiltInScript("dance");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::kUsage);
-  EXPECT_THAT(none.error().message, HasSubstr("demo quiet"));
+  EXPECT_THAT(none.error().message, HasSubstr("demo own_motion quiet"));
 }
 
 TEST(Script, ChannelsStayUntilTheyAreSetAgainAndRepeatsAreWrittenOut) {
