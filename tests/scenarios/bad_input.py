@@ -90,7 +90,7 @@ def wrong_motions(stage):
     file = stage.folder / "motion.bvh"
     file.write_text("HIERARCHY\nROOT x\n{\n")
     boards(INVALID, "motion.bvh", "--motion", file)
-    boards(USAGE, "demo quiet", "--motion", "dance")
+    boards(USAGE, "demo own_motion quiet", "--motion", "dance")
     boards(USAGE, "none, move, wiimote, straps, kinect, camera", "--motion", "quiet", "--hands", "leap")
     boards(FAILURE, "/nonexistent.c3d", "--motion", "/nonexistent.c3d")
     file = stage.folder / "motion.amc"

@@ -33,6 +33,7 @@ SECONDS_TO_STOP = 60
 NOT_HERE = {
     r"^footing-ctl (pair|setup|assign|acceptance|sway|tare|layout .*--check)": "asks a person; scenarios setup_* and scenarios.sway run them",
     r"--calibrate-camera": "asks a person; tests/clients/view/pose_calibration_test.cc has one",
+    r"^footing-ctl motions|p07\.mcap": "takes two minutes; scenario person_model runs it",
     r"layout --preset single|stand/footingd_boards": "needs one board alone, with a person on it",
     r"^footing-ctl led (00:|head)": "needs that device",
     r"^footing-ctl interface leg": "needs remotes on the legs; scenario joystick_line changes interfaces",
@@ -43,7 +44,7 @@ NOT_HERE = {
     r"^sudo ": "as root",
     r"\.\.\.": "stands for the words before it",
     r"\b[A-Z]{2,}\b(?!=)": "has a word to fill in",
-    r"mocap|\.asf|\.trc|squats\.c3d|me\.mcap|me\.bvh|me/|other\.bvh": "reads motion capture of one's own; tests/offline runs it on recordings",
+    r"mocap|\.asf|\.amc|\.trc|squats\.c3d|me\.mcap|me\.bvh|me/|other\.bvh": "reads motion capture of one's own; tests/offline runs it on recordings",
     r"tcp:|tls:": "needs an address of this host, or a server on another one",
     r"/etc/footing/": "reads the administrator's settings",
     r"0\.0\.0\.0|sensors --listen 192": "would listen to other hosts",
