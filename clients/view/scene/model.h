@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clients/view/scene/camera.h"
+#include "clients/view/scene/figure.h"
 #include "clients/view/scene/part.h"
 #include "clients/view/scene/signs.h"
 #include "clients/view/scene/tally.h"

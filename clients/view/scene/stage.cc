@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/view/scene/figure.h"
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/part.h"
 #include "clients/view/scene/ribbon.h"

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "clients/view/scene/bird_motion.h"
+#include "clients/view/scene/figure.h"
 #include "clients/view/scene/part.h"
 #include "clients/view/scene/update.h"
 

@@ -1,4 +1,4 @@
-#include "clients/view/scene/part.h"
+#include "clients/view/scene/figure.h"
 
 #include <gtest/gtest.h>
 
