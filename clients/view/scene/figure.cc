@@ -87,9 +87,8 @@ float TrunkDepth(double share) {
 /// One figure being built. Sizes in the functions below are over the standing height, by eye.
 class Mannequin {
  public:
-  Mannequin(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& p_m,
-            const std::vector<double>& sd_m, const PersonLook& look, PartList& parts)
-      : anatomy_(anatomy), p_m_(p_m), sd_m_(sd_m), look_(look), parts_(parts) {
+  Mannequin(const Anatomy& anatomy, const PersonPose& pose, const PersonLook& look, PartList& parts)
+      : anatomy_(anatomy), pose_(pose), look_(look), parts_(parts) {
     height_ = std::max(0.3f, ((At(Landmark::kLeftHip) - At(Landmark::kLeftKnee)).norm() +
                               (At(Landmark::kLeftKnee) - At(Landmark::kLeftAnkle)).norm()) /
                                  static_cast<float>(kThighAndShankOfHeight));
@@ -115,7 +114,12 @@ class Mannequin {
  private:
   bool Has(Landmark landmark) const { return anatomy_.landmarks[landmark] >= 0; }
   Vector3f At(Landmark landmark) const {
-    return p_m_[static_cast<std::size_t>(anatomy_.landmarks[landmark])].cast<float>();
+    return pose_.p_m[static_cast<std::size_t>(anatomy_.landmarks[landmark])].cast<float>();
+  }
+  Matrix3f OrientationOf(Landmark landmark, const Matrix3f& unknown) const {
+    const int joint = anatomy_.landmarks[landmark];
+    if (joint < 0 || joint >= static_cast<int>(pose_.orientations.size())) return unknown;
+    return pose_.orientations[static_cast<std::size_t>(joint)].cast<float>().toRotationMatrix();
   }
   /// Columns: forward, left, up.
   static Matrix3f Frame(const Vector3f& left, const Vector3f& up) {
@@ -129,8 +133,9 @@ class Mannequin {
   }
   Colour Sure(const Colour& colour, Landmark landmark) const {
     const auto joint = static_cast<std::size_t>(std::max(0, anatomy_.landmarks[landmark]));
-    if (joint >= sd_m_.size()) return colour;
-    const double lost = std::clamp((sd_m_[joint] - kSureSdM) / (kLostSdM - kSureSdM), 0.0, 1.0);
+    if (joint >= pose_.sd_m.size()) return colour;
+    const double lost =
+        std::clamp((pose_.sd_m[joint] - kSureSdM) / (kLostSdM - kSureSdM), 0.0, 1.0);
     return colour + static_cast<float>(0.75 * lost) * (Rgb(0xd83a2b) - colour);
   }
   void Ball(const Vector3f& centre, const Matrix3f& axes, const Vector3f& half_of_height,
@@ -169,27 +174,78 @@ class Mannequin {
     Limb(neck_ - 0.015f * height_ * chest_.col(2), base + 0.2f * (vertex - base), 0.033f, 0.030f,
          look_.skin);
     // The skull ends at the vertex, whatever the rig calls the head's joint.
-    const Matrix3f axes = Frame(chest_.col(1), vertex - neck_);
-    const Vector3f middle = vertex - 0.066f * height_ * axes.col(2);
-    Ball(middle, axes, {0.054f, 0.045f, 0.068f}, look_.skin, 0.2f);
-    Ball(middle + height_ * (0.024f * axes.col(0) + 0.006f * axes.col(2)), axes,
-         {0.035f, 0.038f, 0.020f}, look_.visor, 0.6f);
+    const Matrix3f axes = Frame(OrientationOf(Landmark::kHead, chest_).col(1), vertex - neck_);
+    const Vector3f middle = vertex - 0.064f * height_ * axes.col(2);
+    const auto ball = [&](const Vector3f& at, const Vector3f& half, const Colour& colour,
+                          float gloss) {
+      Ball(middle + height_ * (axes * at), axes, half, colour, gloss);
+    };
+    ball({0, 0, 0}, {0.051f, 0.043f, 0.064f}, look_.skin, 0.2f);
+    ball({0.018f, 0, -0.047f}, {0.024f, 0.025f, 0.021f}, look_.skin, 0.2f);
+    ball({-0.009f, 0, 0.013f}, {0.050f, 0.0465f, 0.057f}, look_.hair, 0.1f);
+    ball({0.050f, 0, -0.012f}, {0.010f, 0.006f, 0.012f}, look_.skin, 0.2f);
+    ball({0.039f, 0, -0.037f}, {0.005f, 0.013f, 0.003f}, look_.lips, 0.1f);
+    for (const float left : {-1.0f, 1.0f}) {
+      ball({0.000f, 0.043f * left, -0.006f}, {0.009f, 0.005f, 0.014f}, look_.skin, 0.2f);
+      ball({0.040f, 0.017f * left, 0.004f}, {0.0075f, 0.0085f, 0.007f}, look_.eyes, 0.5f);
+      ball({0.0455f, 0.0165f * left, 0.004f}, {0.003f, 0.0045f, 0.005f}, look_.hair, 0.5f);
+      ball({0.0415f, 0.018f * left, 0.018f}, {0.0045f, 0.010f, 0.0025f}, look_.hair, 0.1f);
+    }
   }
 
   void AddArm(Landmark clavicle, Landmark shoulder, Landmark elbow, Landmark wrist,
               Landmark hand_end) {
     const Vector3f s = At(shoulder), e = At(elbow), w = At(wrist);
     const Vector3f root = Has(clavicle) ? At(clavicle) : neck_;
-    Limb(root + 0.35f * (s - root), s, 0.040f, 0.036f, look_.shirt);
-    Limb(neck_ + 0.004f * height_ * chest_.col(2), s, 0.028f, 0.036f, look_.shirt);
-    Limb(s, s + 0.55f * (e - s), 0.036f, 0.029f, look_.shirt);
+    Limb(root + 0.35f * (s - root), s, 0.040f, 0.038f, look_.shirt);
+    Limb(neck_ + 0.014f * height_ * chest_.col(2), s, 0.029f, 0.037f, look_.shirt);
+    AddShoulder(s, e);
+    Limb(s, s + 0.55f * (e - s), 0.039f, 0.029f, look_.shirt);
     Limb(s + 0.55f * (e - s), e, 0.026f, 0.023f, Sure(look_.skin, elbow));
     Limb(e, e + 0.3f * (w - e), 0.023f, 0.024f, Sure(look_.skin, elbow));
     Limb(e + 0.3f * (w - e), w, 0.024f, 0.016f, Sure(look_.skin, wrist));
-    Vector3f along = (w - e).normalized();
+    AddHand(wrist, hand_end, (w - e).normalized());
+  }
+
+  /// Breast and back muscles from the ribs to the joint and to the arm's root: without them the arm
+  /// hangs on its collar bone, and the skin splits at the armpit.
+  void AddShoulder(const Vector3f& shoulder, const Vector3f& elbow) {
+    const float left = chest_.col(1).dot(shoulder - neck_) > 0 ? 1 : -1;
+    const Vector3f ribs = hips_ + 0.72f * (neck_ - hips_) + 0.045f * left * height_ * chest_.col(1);
+    const Vector3f arm = shoulder + 0.25f * (elbow - shoulder);
+    Limb(ribs, shoulder, 0.054f, 0.038f, look_.shirt);
+    Limb(ribs, arm, 0.046f, 0.034f, look_.shirt);
+  }
+
+  /// A hand around a rod, as it holds a controller. In the T-pose the rod points ahead, where the
+  /// thumbs are, and the palms face the ground.
+  void AddHand(Landmark wrist, Landmark hand_end, const Vector3f& forearm) {
+    const Vector3f w = At(wrist);
+    Vector3f along = forearm;
     if (Has(hand_end) && (At(hand_end) - w).norm() > 1e-4f) along = (At(hand_end) - w).normalized();
-    const Matrix3f axes = Frame(chest_.col(0), along);
-    Ball(w + 0.046f * height_ * along, axes, {0.015f, 0.024f, 0.050f}, Sure(look_.skin, wrist));
+    const float left = wrist == Landmark::kLeftWrist ? 1 : -1;
+    const Vector3f as_t_pose = left * chest_.col(1);
+    const Matrix3f unknown =
+        Eigen::Quaternionf::FromTwoVectors(as_t_pose, along).toRotationMatrix() * chest_;
+    // Columns: towards the thumb, to the finger tips, out of the back of the hand.
+    Matrix3f axes;
+    axes.col(1) = along;
+    axes.col(2) = left * OrientationOf(wrist, unknown).col(0).cross(along).normalized();
+    axes.col(0) = left * along.cross(axes.col(2));
+    const Colour colour = Sure(look_.skin, wrist);
+    const auto limb = [&](const Vector3f& a, const Vector3f& b, float radius_a, float radius_b) {
+      Limb(w + height_ * (axes * a), w + height_ * (axes * b), radius_a, radius_b, colour);
+    };
+    for (const float x : {0.0175f, 0.006f, -0.006f, -0.0165f}) {
+      const float reach = 1 - 8 * std::abs(x - 0.006f);  // The middle finger is the longest.
+      const Vector3f knuckle(x, 0.054f * reach, 0.003f), middle(x, 0.064f * reach, -0.019f),
+          tip(x, 0.040f, -0.027f);
+      limb({0.5f * x, 0, 0}, knuckle, 0.0135f, 0.0085f);
+      limb(knuckle, middle, 0.0075f, 0.0062f);
+      limb(middle, tip, 0.0062f, 0.0055f);
+    }
+    limb({0.010f, 0.012f, -0.004f}, {0.026f, 0.034f, -0.014f}, 0.012f, 0.0078f);
+    limb({0.026f, 0.034f, -0.014f}, {0.014f, 0.050f, -0.031f}, 0.0078f, 0.0062f);
   }
 
   void AddLeg(Landmark hip, Landmark knee, Landmark ankle) {
@@ -227,8 +283,7 @@ class Mannequin {
   }
 
   const Anatomy& anatomy_;
-  const std::vector<Eigen::Vector3d>& p_m_;
-  const std::vector<double>& sd_m_;
+  const PersonPose& pose_;
   const PersonLook& look_;
   PartList& parts_;
   float height_ = 1.7f;
@@ -239,19 +294,34 @@ class Mannequin {
 }  // namespace
 
 PersonLook MannequinLook() {
-  return {Rgb(0xecc9a4), Rgb(0x2e8a94), Rgb(0x36475a), Rgb(0x3f8fe0), Rgb(0xf2a33c), Rgb(0x26323d)};
+  return {.skin = Rgb(0xecc9a4),
+          .hair = Rgb(0x33261f),
+          .eyes = Rgb(0xf4f4f0),
+          .lips = Rgb(0xb9705f),
+          .shirt = Rgb(0x2e8a94),
+          .trousers = Rgb(0x36475a),
+          .left_shoe = Rgb(0x3f8fe0),
+          .right_shoe = Rgb(0xf2a33c)};
 }
 
 PersonLook PlainLook(const Colour& colour) {
-  return {colour, colour, colour, colour, colour, 0.8f * colour};
+  const Colour darker = 0.8f * colour;
+  return {.skin = colour,
+          .hair = darker,
+          .eyes = colour,
+          .lips = darker,
+          .shirt = colour,
+          .trousers = colour,
+          .left_shoe = colour,
+          .right_shoe = colour};
 }
 
-void AddPerson(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& p_m,
-               const std::vector<double>& sd_m, const PersonLook& look, PartList& parts) {
-  if (!anatomy.person || p_m.size() != anatomy.parents.size()) {
-    return AddLimbs(anatomy.parents, anatomy.radii_m, p_m, look.shirt, parts);
+void AddPerson(const Anatomy& anatomy, const PersonPose& pose, const PersonLook& look,
+               PartList& parts) {
+  if (!anatomy.person || pose.p_m.size() != anatomy.parents.size()) {
+    return AddLimbs(anatomy.parents, anatomy.radii_m, pose.p_m, look.shirt, parts);
   }
-  Mannequin(anatomy, p_m, sd_m, look, parts).Add();
+  Mannequin(anatomy, pose, look, parts).Add();
 }
 
 void AddLimbs(const std::vector<int>& parents, const std::vector<float>& radii_m,

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "clients/view/scene/part.h"
 #include "common/body/landmarks.h"
@@ -26,7 +26,7 @@ bool Fits(const Anatomy& anatomy, const std::vector<int>& parents);
 
 /// Colours of a figure.
 struct PersonLook {
-  Colour skin, shirt, trousers, left_shoe, right_shoe, visor;
+  Colour skin, hair, eyes, lips, shirt, trousers, left_shoe, right_shoe;
 };
 
 /// A dressed mannequin: left shoe blue, right shoe amber.
@@ -34,11 +34,19 @@ PersonLook MannequinLook();
 /// All of one colour: a silhouette, or what is compared with.
 PersonLook PlainLook(const Colour& colour);
 
-/// Adds a figure whose joints are at `p_m` (W, one a link). Where the links are not a person's, or
-/// not as many, a limb is drawn along each of them. Joints that are the less certain (`sd_m`, may
-/// be empty) are the redder.
-void AddPerson(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& p_m,
-               const std::vector<double>& sd_m, const PersonLook& look, PartList& parts);
+/// Where the links of a person are, in W.
+struct PersonPose {
+  std::vector<Eigen::Vector3d> p_m;  ///< One a link.
+  /// One a link; at rest, arms level, the axes of all are those of W. May be empty: the face then
+  /// looks where the chest does, and the hands are turned as little as their arms allow.
+  std::vector<Eigen::Quaterniond> orientations;
+  std::vector<double> sd_m;  ///< Joints that are the less certain are the redder; may be empty.
+};
+
+/// Adds a figure in that pose. Where the links are not a person's, or not as many, a limb is drawn
+/// along each of them.
+void AddPerson(const Anatomy& anatomy, const PersonPose& pose, const PersonLook& look,
+               PartList& parts);
 
 /// Limbs along the links of any tree.
 void AddLimbs(const std::vector<int>& parents, const std::vector<float>& radii_m,

@@ -158,25 +158,29 @@ Anatomy AnatomyOf(const Model& model, std::uint32_t character) {
   return {};
 }
 
-std::vector<Eigen::Vector3d> PlacesOf(const CharacterPose& pose) {
-  std::vector<Eigen::Vector3d> p_m;
-  for (const stream::LinkPose& link : pose.links) p_m.push_back(link.position_m);
-  return p_m;
+PersonPose PersonOf(const CharacterPose& pose) {
+  PersonPose person;
+  for (const stream::LinkPose& link : pose.links) {
+    person.p_m.push_back(link.position_m);
+    person.orientations.push_back(link.orientation);
+  }
+  return person;
 }
 
 void AddReference(const Model& model, const Anatomy& anatomy, double lag_s, std::int64_t now_ns,
                   bool beside, Picture& picture) {
   const ReferencePose* reference = ReferenceAt(model, now_ns - SecondsToNanoseconds(lag_s));
   if (reference == nullptr) return;
-  std::vector<Eigen::Vector3d> p_m = reference->positions_m;
+  PersonPose person;
+  person.p_m = reference->positions_m;
   if (beside) {
-    for (Eigen::Vector3d& p : p_m) p += kBesideM;
+    for (Eigen::Vector3d& p : person.p_m) p += kBesideM;
   }
   const PersonLook look = PlainLook(Rgb(0xffc861));
   if (Fits(anatomy, reference->parents)) {
-    AddPerson(anatomy, p_m, {}, look, picture.ghosts);
+    AddPerson(anatomy, person, look, picture.ghosts);
   } else {
-    AddLimbs(reference->parents, {}, p_m, look.shirt, picture.ghosts);
+    AddLimbs(reference->parents, {}, person.p_m, look.shirt, picture.ghosts);
   }
 }
 
@@ -210,14 +214,15 @@ bool HasReference(const Model& model, std::int64_t now_ns) {
 void AddBody(const Model& model, const CharacterPose& pose, const ComTrail& trail,
              std::int64_t now_ns, const StageOptions& options, Picture& picture) {
   const Anatomy anatomy = AnatomyOf(model, pose.character);
-  const std::vector<Eigen::Vector3d> p_m = PlacesOf(pose);
+  PersonPose person = PersonOf(pose);
   const BodyState& body = *pose.body;
   AddBoards(BoardsOf(model, pose.rig, now_ns), picture.figures);
   if (body.calibrated) {
-    AddPerson(anatomy, p_m, body.link_sd_m, MannequinLook(), picture.figures);
-    AddSoleShadows(anatomy, p_m, picture);
+    person.sd_m = body.link_sd_m;
+    AddPerson(anatomy, person, MannequinLook(), picture.figures);
+    AddSoleShadows(anatomy, person.p_m, picture);
   } else {
-    AddPerson(anatomy, p_m, {}, PlainLook(Rgb(0x8fd6ff)), picture.ghosts);
+    AddPerson(anatomy, person, PlainLook(Rgb(0x8fd6ff)), picture.ghosts);
   }
   if (HasReference(model, now_ns)) {
     const bool beside = !options.overlay_reference;

@@ -195,6 +195,17 @@ stream::Skeleton PersonSkeleton() {
   return skeleton;
 }
 
+PersonPose Bent(const std::vector<Bend>& bends) {
+  Eigen::VectorXd q = body::TPose(Person().skeleton, Person().landmarks);
+  for (const Bend& bend : bends) Turn(bend.landmark, bend.axis, bend.angle_rad, q);
+  body::Kinematics at(Person().skeleton);
+  body::ComputeKinematics(Person().skeleton, q, at);
+  PersonPose pose;
+  pose.p_m = at.p_WJ;
+  for (const Eigen::Matrix3d& R : at.R_WJ) pose.orientations.emplace_back(R);
+  return pose;
+}
+
 Update PersonTickAt(double time_s, const PersonWish& wish) {
   Update update;
   update.received_ns = ClockAt(time_s);

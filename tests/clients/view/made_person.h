@@ -1,6 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include "clients/view/scene/model.h"
+#include "common/body/landmarks.h"
+#include "common/body/skeleton.h"
 
 /// A made stream of the pose engine: a person on two boards who crouches and swings the arms, the
 /// boards' samples, and a reference beside.
@@ -16,6 +20,15 @@ struct PersonWish {
 };
 
 stream::Skeleton PersonSkeleton();
+
+/// A turn of a joint about an axis of W, after all before it.
+struct Bend {
+  body::Landmark landmark;
+  body::Axis axis;
+  double angle_rad = 0;
+};
+/// The T-pose with these turns, the root where it was.
+PersonPose Bent(const std::vector<Bend>& bends);
 
 /// The tick at `time_s`; the first one (time 0) carries what a snapshot carries.
 Update PersonTickAt(double time_s, const PersonWish& wish);
