@@ -23,6 +23,7 @@
 #include "clients/view/app/window.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/render/target.h"
+#include "clients/view/scene/clear_view.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/net/address.h"
@@ -312,7 +313,7 @@ struct Studio {
       background.Drain(show, calibration);
       const std::int64_t now_ns = clock::MonotonicNs();
       scene::Show::Shot shot = show.At(now_ns, false, {options.forces, options.overlay_reference});
-      shot.picture.camera = scene::Orbited(shot.picture.camera, options.look.orbit);
+      shot.picture.camera = scene::ClearView(shot.picture, show.model().track, options.look.orbit);
       if (now_ns >= until_ns || background.stop_asked()) return shot;
       clock::SleepUntil(std::min(until_ns, now_ns + SecondsToNanoseconds(kStepS)));
     }

@@ -20,6 +20,7 @@
 #include "clients/view/app/window.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/render/target.h"
+#include "clients/view/scene/clear_view.h"
 #include "clients/view/scene/stage.h"
 #include "clients/view/scene/text.h"
 #include "clients/view/scene/timeline.h"
@@ -357,7 +358,7 @@ std::vector<DrawnView> DrawSession(render::Screen& screen, PlaySession& session,
   render::TimelineContent line{session.timeline(), {}, session.head(), TrialTextOf(session)};
   for (PlayedSide& side : session.sides()) {
     scene::Show::Shot& shot = shots.emplace_back(session.ShotOf(side, stage));
-    shot.picture.camera = scene::Orbited(shot.picture.camera, picture.orbit);
+    shot.picture.camera = scene::ClearView(shot.picture, side.show.model().track, picture.orbit);
     const std::int64_t now_ns = session.ClockOf(side);
     views.push_back({{shot.picture, side.show.model(), shot.frame, now_ns, shot.past, shot.past_ns},
                      compared && !picture.hud.hidden ? side.name : "",

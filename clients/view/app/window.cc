@@ -11,6 +11,7 @@
 #include "clients/view/app/glfw_window.h"
 #include "clients/view/app/play_summary.h"
 #include "clients/view/render/screen.h"
+#include "clients/view/scene/clear_view.h"
 #include "clients/view/scene/model.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
@@ -157,7 +158,8 @@ Result<std::optional<PlaySession>> Loop(GLFWwindow* window, const Options& optio
     Answer(controls, options, background, show.model(), next_subject);
     auto shot =
         show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference, controls.mouse.followed()});
-    shot.picture.camera = scene::Orbited(shot.picture.camera, controls.mouse.orbit());
+    shot.picture.camera =
+        scene::ClearView(shot.picture, show.model().track, controls.mouse.orbit());
     Push(controls, background, shot, now_ns);
     screen.set_display_scale(DisplayScale(window));
     controls.Refresh(window);

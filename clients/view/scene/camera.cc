@@ -21,7 +21,10 @@ constexpr double kLongestStepS = 0.1;
 constexpr double kJumpM = 2.0;
 constexpr double kHeadingRadps = 2.5;
 constexpr double kPlaceRadps = 9.0;
-constexpr double kHeightRadps = 2.5;  // Slow: the picture must not bounce with every step.
+constexpr double kHeightRadps = 2.5;  // Slow: the picture must not jolt on a step of the track.
+constexpr double kTurnRadps = 2;      // A person turns by many short commands.
+constexpr double kIntoCurveS = 0.8, kMostIntoCurveRad = 0.5;
+constexpr double kHipsM = 0.95;  // Over the ground, while it stands.
 constexpr double kLookAheadRadps = 1.5;
 
 constexpr double kDistanceM = 4.1;
@@ -78,8 +81,10 @@ void Spring::Advance(double goal, double frequency_radps, double dt_s) {
 void ChaseCamera::Place(const Subject& subject) {
   placed_ = true;
   heading_ = {subject.heading_rad, 0};
+  turn_radps_ = {};
+  hips_m_ = subject.support_m ? *subject.support_m + kHipsM : subject.position_m.z();
   look_ahead_ = {kLookAheadS * subject.speed_mps, 0};
-  height_ = {subject.position_m.z(), 0};
+  height_ = {hips_m_, 0};
   x_ = {subject.position_m.x(), 0};
   y_ = {subject.position_m.y(), 0};
 }
@@ -96,14 +101,22 @@ void ChaseCamera::Advance(const Subject& subject, double dt_s) {
   const Eigen::Vector3d lead_m = (subject.position_m - before_m) / step_s * (2 / kPlaceRadps);
   x_.Advance(subject.position_m.x() + lead_m.x(), kPlaceRadps, step_s);
   y_.Advance(subject.position_m.y() + lead_m.y(), kPlaceRadps, step_s);
-  height_.Advance(subject.position_m.z(), kHeightRadps, step_s);
+  // In flight the ground of the take-off counts: the subject rises in a picture that stands still.
+  if (subject.support_m) hips_m_ = *subject.support_m + kHipsM;
+  height_.Advance(hips_m_, kHeightRadps, step_s);
+  turn_radps_.Advance(subject.turn_radps, kTurnRadps, step_s);
+  // The heading, too, is led by its spring's lag.
   const double turn_rad = WrapAngle(subject.heading_rad - heading_.value);
-  heading_.Advance(heading_.value + turn_rad, kHeadingRadps, step_s);
+  heading_.Advance(heading_.value + turn_rad + turn_radps_.value * (2 / kHeadingRadps),
+                   kHeadingRadps, step_s);
   look_ahead_.Advance(kLookAheadS * subject.speed_mps, kLookAheadRadps, step_s);
 }
 
 Camera ChaseCamera::Look() const {
-  const Eigen::Vector3d forward(std::cos(heading_.value), std::sin(heading_.value), 0);
+  const double into_curve_rad =
+      std::clamp(kIntoCurveS * turn_radps_.value, -kMostIntoCurveRad, kMostIntoCurveRad);
+  const double yaw_rad = heading_.value + into_curve_rad;
+  const Eigen::Vector3d forward(std::cos(yaw_rad), std::sin(yaw_rad), 0);
   const Eigen::Vector3d left(-forward.y(), forward.x(), 0);
   const Eigen::Vector3d at_m(x_.value, y_.value, height_.value);
   Camera camera;

@@ -35,6 +35,9 @@ struct Subject {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   double heading_rad = 0;
   double speed_mps = 0;
+  double turn_radps = 0;  ///< Commanded: known before the heading turns. Left is positive.
+  /// Height of the foot or feet that touch, W; nothing in flight.
+  std::optional<double> support_m;
 };
 
 /// A critically damped spring, x'' = w^2 (goal - x) - 2 w x', stepped exactly.
@@ -45,7 +48,9 @@ struct Spring {
 };
 
 /// A chase camera: 4.5 m behind and 1.5 m above, on critically damped springs, never rolling. Its
-/// look-ahead grows with speed.
+/// look-ahead grows with speed. It looks into a curve from the command on, by what it turns in 0.8
+/// s. Its height is that over the ground which carries the subject, so that it does not bob with
+/// steps or jumps.
 class ChaseCamera {
  public:
   /// Moves on by dt_s in [0, 0.1] (longer is cut). The first call, and a subject that jumped by
@@ -58,7 +63,9 @@ class ChaseCamera {
 
   bool placed_ = false;
   Subject subject_;
+  double hips_m_ = 0;  ///< Height of the hips of a subject that stands where this one last stood.
   Spring heading_;
+  Spring turn_radps_;
   Spring look_ahead_;
   Spring height_;
   Spring x_, y_;

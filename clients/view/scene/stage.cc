@@ -17,6 +17,7 @@ namespace footing::scene {
 namespace {
 
 constexpr double kEmptyHipHeightM = 1.0;
+constexpr double kStepsPerS = 2.5;  // A walk takes about 2, a run 3 steps a second.
 constexpr double kSlopeHalfM = 0.3;
 constexpr double kSteepest = 0.6;
 /// The picture follows a head within this time, without its tremor.
@@ -49,6 +50,18 @@ BirdSkeleton SkeletonOf(const Model& model, std::uint32_t character) {
   return {};
 }
 
+/// The mean height of the contacts that touch.
+std::optional<double> SupportOf(const std::vector<stream::Contact>& contacts) {
+  double sum_m = 0;
+  int touching = 0;
+  for (const stream::Contact& contact : contacts) {
+    if (!contact.touching) continue;
+    sum_m += contact.position_m.z();
+    ++touching;
+  }
+  return touching > 0 ? std::optional(sum_m / touching) : std::nullopt;
+}
+
 Subject SubjectOf(const Model& model, const CharacterPose& pose) {
   const BirdSkeleton skeleton = SkeletonOf(model, pose.character);
   Subject subject;
@@ -58,6 +71,8 @@ Subject SubjectOf(const Model& model, const CharacterPose& pose) {
   }
   subject.heading_rad = pose.gait.heading_rad;
   subject.speed_mps = pose.gait.speed_mps;
+  subject.turn_radps = kStepsPerS * pose.gait.commanded_turn_rad;
+  subject.support_m = SupportOf(pose.contacts);
   return subject;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "common/base/units.h"
 
@@ -112,6 +114,98 @@ TEST(ChaseCamera, ALongPauseDoesNotThrowItOff) {
   camera.Advance(At(0.5, 0, 0), 0);
   for (int i = 0; i < 300; ++i) camera.Advance(At(0.5, 0, 0), kStepS);
   EXPECT_NEAR(camera.Look().eye_m.x(), 0.5 - 4.5, 1e-3);
+}
+
+double YawOf(const Camera& camera) {
+  const Eigen::Vector3d way_m = camera.target_m - camera.eye_m;
+  return std::atan2(way_m.y(), way_m.x());
+}
+
+/// Yaw of the view in a curve at 3 m/s, less that of a straight way: the command comes at 0 s, the
+/// heading follows from 0.4 s on, and both end at 4 s.
+std::vector<double> YawsInACurve(double turn_radps) {
+  ChaseCamera camera = Settled(0, 3);
+  const double straight_rad = YawOf(camera.Look());
+  Subject subject = At(3 * kStepS * 599, 0, 3);
+  std::vector<double> yaws_rad;
+  for (double t_s = 0; t_s < 8; t_s += kStepS) {
+    subject.turn_radps = t_s < 4 ? turn_radps : 0;
+    if (t_s >= 0.4 && t_s < 4) subject.heading_rad += turn_radps * kStepS;
+    subject.position_m.head<2>() +=
+        3 * kStepS * Eigen::Vector2d(std::cos(subject.heading_rad), std::sin(subject.heading_rad));
+    camera.Advance(subject, kStepS);
+    yaws_rad.push_back(WrapAngle(YawOf(camera.Look()) - straight_rad));
+  }
+  return yaws_rad;
+}
+
+double At(const std::vector<double>& curve, double t_s) {
+  return curve[static_cast<std::size_t>(t_s / kStepS)];
+}
+
+TEST(ChaseCamera, LooksIntoACurveBeforeItsSubjectTurns) {
+  for (const double turn_radps : {0.4, -0.4}) {
+    const std::vector<double> yaws_rad = YawsInACurve(turn_radps);
+    const double side = turn_radps > 0 ? 1 : -1;
+    EXPECT_GT(side * At(yaws_rad, 0.4), DegreesToRadians(3)) << "the heading is still straight";
+    // In the curve it looks ahead of the heading by what the subject turns within 0.8 s.
+    const double heading_rad = 0.4 * (3.5 - 0.4);
+    EXPECT_NEAR(side * At(yaws_rad, 3.5), heading_rad + 0.8 * 0.4, 0.06);
+    EXPECT_NEAR(side * At(yaws_rad, 7.9), 0.4 * 3.6, 0.01) << "and then straight on";
+  }
+}
+
+TEST(ChaseCamera, TurnsWithoutAJerkAndSwingsBackByLittle) {
+  const std::vector<double> yaws_rad = YawsInACurve(0.4);
+  double fastest_radps = 0, most_radps2 = 0, back_rad = 0, farthest_rad = 0;
+  for (std::size_t i = 2; i < yaws_rad.size(); ++i) {
+    const double rate = (yaws_rad[i] - yaws_rad[i - 1]) / kStepS;
+    const double before = (yaws_rad[i - 1] - yaws_rad[i - 2]) / kStepS;
+    fastest_radps = std::max(fastest_radps, std::abs(rate));
+    most_radps2 = std::max(most_radps2, std::abs(rate - before) / kStepS);
+    farthest_rad = std::max(farthest_rad, yaws_rad[i]);
+  }
+  back_rad = farthest_rad - yaws_rad.back();
+  EXPECT_LT(fastest_radps, 2 * 0.4);
+  EXPECT_LT(most_radps2, 4);
+  // What it looked ahead, and little more.
+  EXPECT_LT(back_rad, 0.8 * 0.4 + DegreesToRadians(5));
+}
+
+TEST(ChaseCamera, StandsStillInHeightWhileItsSubjectJumps) {
+  Subject subject = At(0, 0, 0);
+  subject.support_m = 0;
+  ChaseCamera camera;
+  camera.Advance(subject, kStepS);
+  const double eye_m = camera.Look().eye_m.z();
+  for (double t_s = 0; t_s < 3; t_s += kStepS) {
+    // Hops of 0.5 m and 0.64 s, 0.2 s apart, in which the hips dip.
+    const double phase_s = std::fmod(t_s, 0.84), rise_m = 9.81 / 2 * phase_s * (0.64 - phase_s);
+    subject.position_m.z() = phase_s < 0.64 ? 0.95 + rise_m : 0.85;
+    subject.support_m = phase_s < 0.64 ? std::nullopt : std::optional(0.0);
+    camera.Advance(subject, kStepS);
+    EXPECT_NEAR(camera.Look().eye_m.z(), eye_m, 1e-9) << t_s;
+  }
+}
+
+TEST(ChaseCamera, EasesToTheHeightThatItsSubjectLandsOn) {
+  Subject subject = At(0, 0, 0);
+  subject.support_m = 0;
+  ChaseCamera camera;
+  camera.Advance(subject, kStepS);
+  subject.support_m = 0.3;
+  double before_m = camera.Look().eye_m.z(), fastest_mps = 0;
+  const double begin_m = before_m;
+  for (double t_s = 0; t_s < 3; t_s += kStepS) {
+    camera.Advance(subject, kStepS);
+    const double eye_m = camera.Look().eye_m.z();
+    EXPECT_GE(eye_m, before_m - 1e-9);
+    fastest_mps = std::max(fastest_mps, (eye_m - before_m) / kStepS);
+    before_m = eye_m;
+  }
+  EXPECT_NEAR(before_m - begin_m, 0.3, 0.01);
+  // A critically damped step of h is fastest at 1/w, with w h / e.
+  EXPECT_NEAR(fastest_mps, 2.5 * 0.3 / std::exp(1), 0.01);
 }
 
 Camera Behind() {
