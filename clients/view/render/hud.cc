@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -106,6 +107,32 @@ HudBoxes BoxesOf(const HudContent& content, const HudOptions& options, ImVec2 si
   return LayOut(size, scale, NeedsOf(content, options));
 }
 
+namespace {
+
+const stream::TrialState* TrialOf(const scene::CharacterPose* pose) {
+  return pose != nullptr && pose->trial ? &*pose->trial : nullptr;
+}
+
+/// Large text for whoever plays or takes part. A study's participant reads the study's alone, its
+/// experimenter none.
+std::optional<scene::ParticipantText> StageOf(const HudContent& content,
+                                              const scene::CharacterPose* pose, bool subject) {
+  const scene::Model& model = content.model;
+  const stream::StudyState& study = model.study.state;
+  if (scene::ShowsStudy(study)) {
+    if (!subject) return std::nullopt;
+    const stream::TrialState* trial = pose == nullptr ? nullptr : scene::ShownTrial(*pose, study);
+    const bool started = trial != nullptr && trial->progress.phase != stream::TrialPhase::kReady;
+    return scene::ParticipantTextOf(
+        study, NanosecondsToSeconds(content.now_ns - model.study.received_ns), started);
+  }
+  if (scene::ShowsGame(model.game, TrialOf(pose))) return scene::GameStage(model.game);
+  if (subject || TrialOf(pose) == nullptr) return std::nullopt;
+  return scene::TrialStage(*pose->trial);
+}
+
+}  // namespace
+
 void DrawHud(const Paint& p, const HudContent& content, const HudOptions& options, ImVec2 size) {
   const scene::Model& model = content.model;
   if (options.camera_alone) {
@@ -135,13 +162,14 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
     DrawLostPanel(p, *pose, above);
     notes.low.y = above.low.y;
   }
-  if (options.hidden) DrawParticipantPanel(p, model, pose, content.now_ns, notes);
-  // A round is a trial: its panel would say the same again.
-  if (scene::ShowsGame(model.game, pose != nullptr && pose->trial ? &*pose->trial : nullptr)) {
+  const bool game = scene::ShowsGame(model.game, TrialOf(pose));
+  const auto stage = StageOf(content, pose, options.hidden);
+  // Before and after a round its stage says all, and the biped is still to be seen below it.
+  if (game && (!stage || model.game.phase == stream::GamePhase::kRound))
     DrawGamePanel(p, model.game, notes);
-  } else if (pose != nullptr) {
-    DrawTrialPanel(p, model, *pose, options.hidden, notes);
-  }
+  if (stage) DrawParticipantPanel(p, *stage, notes);
+  // A round is a trial: its panel would say the same again.
+  if (!game && pose != nullptr) DrawTrialPanel(p, model, *pose, options.hidden, notes);
   if (options.hidden) return DrawLiveKeys(p, content, options, size);
   if (scene::IsWaiting(model)) {
     DrawWaiting(p, model, boxes.middle);

@@ -93,27 +93,20 @@ std::vector<ParticipantLine> ParticipantLines(const Paint& p, const scene::Parti
 
 }  // namespace
 
-void DrawParticipantPanel(const Paint& p, const scene::Model& model,
-                          const scene::CharacterPose* pose, std::int64_t now_ns, Box& space) {
-  const stream::StudyState& study = model.study.state;
-  const stream::TrialState* trial = pose == nullptr ? nullptr : scene::ShownTrial(*pose, study);
-  const bool started = trial != nullptr && trial->progress.phase != stream::TrialPhase::kReady;
-  const auto text = scene::ParticipantTextOf(
-      study, NanosecondsToSeconds(now_ns - model.study.received_ns), started);
-  if (!text) return;
+void DrawParticipantPanel(const Paint& p, const scene::ParticipantText& text, Box& space) {
   const float s = p.scale;
   const std::vector<ParticipantLine> lines =
-      ParticipantLines(p, *text, space.width() - 2 * kParticipantSide * s);
+      ParticipantLines(p, text, space.width() - 2 * kParticipantSide * s);
   const float height = HeightOfParticipant(lines, s);
   // A fault of the devices is shown above it, and comes first.
   if (height > space.height()) return;
-  float width = text->aside || text->headline.empty() ? 0 : kLeastParticipantWidth * s;
+  float width = text.aside || text.headline.empty() ? 0 : kLeastParticipantWidth * s;
   for (const ParticipantLine& line : lines) {
     width = std::max(width, p.WidthOf(line.font, line.text) + 2 * kParticipantSide * s);
   }
   width = std::min(width, space.width());
   const float middle = (space.low.x + space.high.x) / 2;
-  const float low = text->aside ? space.low.y : space.low.y + (space.height() - height) / 5;
+  const float low = text.aside ? space.low.y : space.low.y + (space.height() - height) / 5;
   p.list->AddRectFilled({middle - width / 2, low}, {middle + width / 2, low + height},
                         kBehindParticipant, 14 * s);
   float y = low + (kParticipantTop + kParticipantLineGap / 2) * s;
@@ -121,7 +114,7 @@ void DrawParticipantPanel(const Paint& p, const scene::Model& model,
     p.WriteCentred(line.font, {middle, y}, line.ink, line.text);
     y += line.font->FontSize + kParticipantLineGap * s;
   }
-  if (text->aside) space.low.y += height + 6 * s;
+  if (text.aside) space.low.y += height + 6 * s;
 }
 
 namespace {

@@ -747,6 +747,50 @@ std::optional<ParticipantText> ParticipantTextOf(const stream::StudyState& study
   return std::nullopt;
 }
 
+std::optional<ParticipantText> GameStage(const stream::GameState& game) {
+  if (game.players.size() != 2) return std::nullopt;
+  const std::string& first = game.players[0].name;
+  const std::string& second = game.players[1].name;
+  const std::string parts =
+      first + " " + PartText(game, 0) + ", " + second + " " + PartText(game, 1);
+  const std::string points =
+      Fixed(game.players[0].points, 0) + " : " + Fixed(game.players[1].points, 0);
+  switch (game.phase) {
+    case GamePhase::kUnspecified:
+    case GamePhase::kLeft:
+      return std::nullopt;
+    case GamePhase::kWaiting:
+      return ParticipantText{.headline = first + " against " + second,
+                             .detail = game.note.empty() ? parts : game.note};
+    case GamePhase::kCountdown:
+      return ParticipantText{.headline = RoundTitle(game.results.size() + 1, game),
+                             .count = Fixed(std::ceil(std::max(game.left_s, 1.0)), 0),
+                             .detail = parts};
+    case GamePhase::kRound:
+      if (game.results.empty() || game.results.back().time_s > kGoS) return std::nullopt;
+      return ParticipantText{.count = "Go!"};
+    case GamePhase::kPause:
+      return ParticipantText{
+          .headline = "The round is over", .count = points, .detail = GameTitle(game)};
+    case GamePhase::kOver:
+      return ParticipantText{
+          .headline = GameTitle(game), .count = points, .detail = first + " : " + second};
+  }
+  return std::nullopt;
+}
+
+std::optional<ParticipantText> TrialStage(const stream::TrialState& trial) {
+  if (!(trial.finish_m > 0)) return std::nullopt;
+  const stream::TrialProgress& progress = trial.progress;
+  if (progress.phase == stream::TrialPhase::kRunning && progress.time_s < kGoS)
+    return ParticipantText{.count = "Go!", .aside = true};
+  if (progress.phase != stream::TrialPhase::kFinished) return std::nullopt;
+  return ParticipantText{.headline = "Finish",
+                         .count = Fixed(progress.time_s, 1) + " s",
+                         .detail = AttemptText(trial),
+                         .aside = true};
+}
+
 std::vector<std::string> StudyLines(const stream::StudyState& study, double passed_s) {
   const std::string clock = StudyClock(study, passed_s);
   std::vector<std::string> lines{StudyTitle(study),

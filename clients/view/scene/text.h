@@ -141,7 +141,7 @@ std::string StudyNext(const stream::StudyState& study);
 /// "keys: s stops it, u undoes the latest failure"; empty without any.
 std::string StudyKeys(const stream::StudyState& study);
 
-/// Text for a study's participant on their own screen.
+/// Text for a study's participant on their own screen, or for the players of a game.
 struct ParticipantText {
   std::string headline = {};  ///< "Get ready".
   std::string count = {};     ///< Count-in, "3", "2", "1", "Go!", or countdown, "0:42".
@@ -153,6 +153,13 @@ struct ParticipantText {
 /// the trial of the phase has begun, so its count-in is over.
 std::optional<ParticipantText> ParticipantTextOf(const stream::StudyState& study, double passed_s,
                                                  bool started);
+
+/// Stages of the terrain game for everybody who looks: its title, the countdown, "Go!", the end of
+/// a round, the winner. Empty in a round.
+std::optional<ParticipantText> GameStage(const stream::GameState& game);
+
+/// Start and finish of a trial with a finish line, where no study and no game has words for them.
+std::optional<ParticipantText> TrialStage(const stream::TrialState& trial);
 
 /// The mode of the pose engine and what it leaves out: "paper mode without angular momentum".
 std::string ModeText(const BodyState& body);

@@ -168,7 +168,7 @@ TEST(ChaseCamera, TurnsWithoutAJerkAndSwingsBackByLittle) {
   back_rad = farthest_rad - yaws_rad.back();
   EXPECT_LT(fastest_radps, 2 * 0.4);
   EXPECT_LT(most_radps2, 4);
-  // What it looked ahead, and little more.
+  // It swings back by as much as it looked ahead, and little more.
   EXPECT_LT(back_rad, 0.8 * 0.4 + DegreesToRadians(5));
 }
 

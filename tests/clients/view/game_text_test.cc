@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/clients/view/made_game.h"
 #include "tests/clients/view/made_stream.h"
 
@@ -54,6 +56,35 @@ TEST(GameText, CountsDownInMinutesAndSecondsAndNeverShowsZeroBeforeTheEnd) {
   EXPECT_EQ(GameClock(game), "0:01");
   game.left_s = 0;
   EXPECT_EQ(GameClock(game), "");
+}
+
+TEST(GameStage, HasATitleACountdownGoAnEndOfEachRoundAndAWinner) {
+  stream::GameState game = made::Game();
+  EXPECT_FALSE(GameStage(game)) << "in a round the world alone matters";
+  EXPECT_FALSE(GameStage({}));
+  game.results.back().time_s = 0.4;
+  EXPECT_EQ(GameStage(game)->count, "Go!");
+  game.phase = GamePhase::kCountdown;
+  for (const auto& [left_s, count] :
+       {std::pair(4.2, "5"), std::pair(3.0, "3"), std::pair(0.3, "1"), std::pair(0.0, "1")}) {
+    game.left_s = left_s;
+    EXPECT_EQ(GameStage(game)->count, count) << left_s;
+  }
+  EXPECT_EQ(GameStage(game)->headline, "Round 2 of 2");
+  EXPECT_EQ(GameStage(game)->detail, "Ann builds, Ben runs");
+  game.phase = GamePhase::kPause;
+  EXPECT_EQ(GameStage(game)->headline, "The round is over");
+  EXPECT_EQ(GameStage(game)->count, "38 : 8");
+  game.phase = GamePhase::kOver;
+  EXPECT_EQ(GameStage(game)->headline, "Ann wins");
+  game.phase = GamePhase::kLeft;
+  EXPECT_FALSE(GameStage(game));
+  game.phase = GamePhase::kWaiting;
+  game.results.clear();
+  EXPECT_EQ(GameStage(game)->headline, "Ann against Ben");
+  EXPECT_EQ(GameStage(game)->detail, "Ann runs, Ben builds");
+  game.note = "waiting for the builder's Wiimote";
+  EXPECT_EQ(GameStage(game)->detail, game.note);
 }
 
 TEST(GameText, NamesThePartsOfTheRoundOrOfTheNextOne) {

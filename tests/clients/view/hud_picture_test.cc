@@ -189,6 +189,48 @@ TEST_F(HudPictureTest, AGameIsSeenAtEverySizeAlsoWithoutThePanels) {
       [](bool, int inside, const std::string& name) { EXPECT_GT(inside, 1000) << name; });
 }
 
+TEST_F(HudPictureTest, TheStagesOfAGameAreReadAtEverySizeAlsoWithoutThePanels) {
+  const scene::made::Wish wish{.gait = stream::Gait::kStep};
+  const scene::Model bare = scene::made::ModelAfter(12, wish);
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::Picture picture = stage.Advance(bare, frame, now_ns, 0.01, {});
+  scene::Model round = bare, countdown = bare, over = bare;
+  round.game = countdown.game = over.game = scene::made::Game();
+  countdown.game.phase = stream::GamePhase::kCountdown;
+  countdown.game.left_s = 2.4;
+  over.game.phase = stream::GamePhase::kOver;
+  for (const auto& [model, name] :
+       {std::pair(&countdown, "game_countdown"), std::pair(&over, "game_over")}) {
+    CompareMiddles(
+        picture, {*model, frame}, {round, frame}, name,
+        [](bool, int inside, const std::string& where) { EXPECT_GT(inside, 1000) << where; });
+  }
+}
+
+TEST_F(HudPictureTest, AFinishIsSeenWithThePanelsAndNeverOnTheSubjectsScreen) {
+  const scene::made::Wish wish{.gait = stream::Gait::kStep};
+  const scene::Model model = scene::made::ModelAfter(12, wish);
+  scene::WorldFrame running = scene::made::TickAt(12, wish).frame.value();
+  stream::TrialState& trial = running.characters.front().trial.emplace();
+  trial.finish_m = 66;
+  trial.progress.phase = stream::TrialPhase::kRunning;
+  trial.progress.time_s = 41.2;
+  scene::WorldFrame finished = running;
+  finished.characters.front().trial->progress.phase = stream::TrialPhase::kFinished;
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::Picture picture = stage.Advance(model, running, now_ns, 0.01, {});
+  Resize(kWidth, kHeight);
+  HudOptions subject;
+  subject.hidden = true;
+  EXPECT_EQ(Show(picture, model, finished, now_ns, subject, "finish_subject").rgb,
+            Show(picture, model, running, now_ns, subject, "running_subject").rgb);
+  EXPECT_NE(Show(picture, model, finished, now_ns, {}, "finish").rgb,
+            Show(picture, model, running, now_ns, {}, "running").rgb);
+}
+
 TEST_F(HudPictureTest, AStudyIsSeenByItsExperimenterAloneAtEverySize) {
   const scene::made::Wish wish;
   const scene::Model bare = scene::made::ModelAfter(12, wish);

@@ -39,6 +39,24 @@ stream::TrialState RunningTrial() {
   return trial;
 }
 
+TEST(TrialStage, SaysGoAtTheStartAndTheTimeAtTheFinish) {
+  stream::TrialState trial = RunningTrial();
+  EXPECT_FALSE(TrialStage(trial)) << "the trial is under way";
+  trial.progress.time_s = 0.3;
+  EXPECT_EQ(TrialStage(trial)->count, "Go!");
+  trial.progress.time_s = 41.23;
+  trial.progress.phase = stream::TrialPhase::kFinished;
+  EXPECT_EQ(TrialStage(trial)->count, "41.2 s");
+  EXPECT_THAT(TrialStage(trial)->detail, HasSubstr("failed attempts 3"));
+  EXPECT_TRUE(TrialStage(trial)->aside) << "the character is still to be seen";
+  trial.progress.phase = stream::TrialPhase::kStopped;
+  EXPECT_FALSE(TrialStage(trial));
+  trial.finish_m = 0;
+  trial.progress.phase = stream::TrialPhase::kRunning;
+  trial.progress.time_s = 0.3;
+  EXPECT_FALSE(TrialStage(trial)) << "an endless track has neither";
+}
+
 TEST(TrialText, AnnouncesTheTaskBeforeTheMarkAndCommandsItBehind) {
   stream::TrialState trial = RunningTrial();
   EXPECT_EQ(TaskText(trial, StudyTrack()), "walk to the line, then stop: 12 m");
