@@ -35,6 +35,11 @@ if(FANN_INCLUDE AND FANN_LIBRARY)
   target_include_directories(footing_fann SYSTEM INTERFACE ${FANN_INCLUDE})
   target_link_libraries(footing_fann INTERFACE ${FANN_LIBRARY})
 endif()
+# footing-view --sound plays by it; without it that says so.
+pkg_check_modules(openal QUIET IMPORTED_TARGET openal)
+if(openal_FOUND)
+  set(EXTERNAL_openal PkgConfig::openal)
+endif()
 # footing-tune and footing-train share their work over MPI where it is found.
 option(FOOTING_MPI "Share the trials of footing-tune and footing-train over MPI, where it is installed" ON)
 if(FOOTING_MPI)

@@ -182,6 +182,7 @@ int main(int argc, char** argv) {
       "Viewer: shows the biped on its track, or the reconstructed body, live or from a recording.",
       "  footing-view\n"
       "  footing-view --connect tcp:127.0.0.1:4711 --subject\n"
+      "  footing-view --sound\n"
       "  footing-view --recording walk.mcap\n"
       "  footing-view --recording study.mcap --trial p07-1 --beside study.mcap:p07-2\n"
       "  footing-view --screenshot bird.png --at 5\n"
@@ -209,6 +210,15 @@ int main(int argc, char** argv) {
   app->add_flag("--replay-falls", options.replay_falls,
                 "Replay the last 5 s before each fall in slow motion");
   app->add_flag("--text", options.text, "Show the state as text in the terminal");
+  for (CLI::Option* const in_window :
+       {app->add_flag("--sound", options.feedback.sound,
+                      "Play steps, landings and wings on the machine's sound; in a window"),
+        app->add_flag("--rumble", options.feedback.rumble,
+                      "Shake the remote on the side of each foot that touches down; live, in a "
+                      "window")
+            ->excludes("--recording")}) {
+    in_window->excludes("--screenshot")->excludes("--record")->excludes("--text");
+  }
   app->add_flag("--json", options.json, "Print one JSON object on standard output at the end");
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
 

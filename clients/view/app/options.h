@@ -38,6 +38,12 @@ struct LookOptions {
   scene::Orbit orbit;          ///< View to begin with.
 };
 
+/// Ways to hear and to feel the steps.
+struct FeedbackOptions {
+  bool sound = false;   ///< Steps, landings and wings are heard.
+  bool rumble = false;  ///< The remotes shake at touchdowns.
+};
+
 /// Options from the command line.
 struct Options {
   std::vector<transport::Address> addresses;
@@ -58,6 +64,7 @@ struct Options {
   /// Samples per pixel: 0, 2, 4, 8; nothing: as many as render::Target chooses.
   std::optional<int> samples;
   LookOptions look;
+  FeedbackOptions feedback;
   int width = 1280;
   int height = 720;
 

@@ -17,6 +17,7 @@
 #include "clients/view/app/glfw_window.h"
 #include "clients/view/app/pictures.h"
 #include "clients/view/app/play_summary.h"
+#include "clients/view/app/speaker.h"
 #include "clients/view/app/window.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/render/target.h"
@@ -180,6 +181,7 @@ Result<std::optional<PlaySession>> PlayLoop(GLFWwindow* window, const Options& o
                                             render::Screen& screen, PlayControls& controls) {
   StopSignal stop;
   PictureTimes times;
+  ViewSounds sounds(options.feedback.sound);
   PlaySession& session = controls.session;
   const std::int64_t started_ns = clock::MonotonicNs();
   std::int64_t last_ns = started_ns;
@@ -196,8 +198,10 @@ Result<std::optional<PlaySession>> PlayLoop(GLFWwindow* window, const Options& o
     screen.set_display_scale(DisplayScale(window));
     controls.Refresh(window);
     const PixelSize size = BeginPicture(window);
-    controls.mouse.SetViews(
-        DrawSession(screen, session, PictureOf(controls), size.width, size.height), false);
+    const std::vector<DrawnView> drawn =
+        DrawSession(screen, session, PictureOf(controls), size.width, size.height);
+    sounds.Follow(drawn);
+    controls.mouse.SetViews(drawn, false);
     controls.timeline.reset();
     if (controls.with_timeline) {
       controls.timeline =

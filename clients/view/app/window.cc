@@ -10,6 +10,7 @@
 #include "clients/view/app/feed.h"
 #include "clients/view/app/glfw_window.h"
 #include "clients/view/app/play_summary.h"
+#include "clients/view/app/speaker.h"
 #include "clients/view/render/screen.h"
 #include "clients/view/scene/clear_view.h"
 #include "clients/view/scene/model.h"
@@ -23,7 +24,7 @@
 namespace footing::view {
 namespace {
 
-constexpr char kSimulation[] = "footing-sim";
+constexpr char kSimulation[] = "footing-sim", kSensorServer[] = "footingd";
 
 /// Heights of the picture that an arrow key turns the view by.
 constexpr double kTurnByKey = 0.03;
@@ -129,6 +130,12 @@ void Push(LiveControls& controls, Background& background, scene::Show::Shot& sho
   if (shown) scene::AddPush(shot.frame, *shown, shot.picture);
 }
 
+void Rumble(const std::vector<scene::Sound>& sounds, const scene::WorldFrame& frame,
+            Background& background, const scene::Model& model) {
+  for (v1::Command& command : RumbleCommands(sounds, frame, model))
+    background.SendTo(kSensorServer, std::move(command));
+}
+
 bool MayPush(const Options& options, const LiveControls& controls, const scene::Model& model) {
   const scene::KeyContext context = scene::ContextOf(model, false, false);
   return !options.subject && !controls.hud.frozen && !model.observed.calibration &&
@@ -142,6 +149,7 @@ Result<std::optional<PlaySession>> Loop(GLFWwindow* window, const Options& optio
   Background background(options);
   scene::Show show;
   PictureTimes times;
+  ViewSounds sounds(options.feedback.sound);
   if (options.replay_falls) show.ReplayFalls();
   const std::int64_t started_ns = clock::MonotonicNs();
   double passed_s = 0;
@@ -169,8 +177,10 @@ Result<std::optional<PlaySession>> Loop(GLFWwindow* window, const Options& optio
     screen.Draw(content, hud, size.width, size.height);
     const render::Box whole{{0, 0},
                             {static_cast<float>(size.width), static_cast<float>(size.height)}};
-    controls.mouse.SetViews({ViewOf(screen, content, hud, whole)},
-                            MayPush(options, controls, show.model()));
+    const DrawnView view = ViewOf(screen, content, hud, whole);
+    const std::vector<scene::Sound> heard = sounds.Follow({view});
+    if (options.feedback.rumble) Rumble(heard, shot.frame, background, show.model());
+    controls.mouse.SetViews({view}, MayPush(options, controls, show.model()));
     EndPicture(window, now_ns, times);
     passed_s = NanosecondsToSeconds(clock::MonotonicNs() - started_ns);
   }
@@ -331,6 +341,41 @@ v1::Command TPoseCommand() {
   v1::Command command;
   command.mutable_calibrate_t_pose()->set_character(1);
   return command;
+}
+
+namespace {
+
+/// The motor of a Wiimote needs some 30 ms to be felt.
+constexpr double kShortestRumbleMs = 40, kMoreRumbleMs = 80;
+constexpr double kHardMps = 3;  // A jump's landing.
+
+const scene::CharacterPose* BipedOf(const scene::WorldFrame& frame, std::uint32_t character) {
+  for (const scene::CharacterPose& pose : frame.characters) {
+    if (pose.character == character && !pose.body) return &pose;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<v1::Command> RumbleCommands(const std::vector<scene::Sound>& sounds,
+                                        const scene::WorldFrame& frame, const scene::Model& model) {
+  std::vector<v1::Command> commands;
+  for (const scene::Sound& sound : sounds) {
+    const scene::CharacterPose* pose = BipedOf(frame, sound.character);
+    if (sound.foot < 0 || sound.foot > 1 || pose == nullptr) continue;
+    const auto role =
+        sound.foot == 0 ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand;
+    const double hardness = std::clamp(sound.impact_mps / kHardMps, 0.0, 1.0);
+    for (const scene::Device& device : model.devices) {
+      if (device.status.rig != pose->rig || device.status.role != role) continue;
+      v1::SetRumble& rumble = *commands.emplace_back().mutable_set_rumble();
+      rumble.set_device(device.status.device);
+      rumble.set_on(true);
+      rumble.set_lease_ms(static_cast<std::uint32_t>(kShortestRumbleMs + hardness * kMoreRumbleMs));
+    }
+  }
+  return commands;
 }
 
 v1::Command PushCommand(const scene::Push& push) {

@@ -9,6 +9,7 @@
 #include "clients/view/app/play_session.h"
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/pointer.h"
+#include "clients/view/scene/sound.h"
 #include "clients/view/scene/update.h"
 #include "common/base/result.h"
 #include "common/guide/set_up.h"
@@ -65,6 +66,10 @@ Result<std::vector<v1::Command>> SubjectCommands(const std::vector<std::string>&
 v1::Command TPoseCommand();
 /// The push on a character.
 v1::Command PushCommand(const scene::Push& push);
+/// Motors that shake at touchdowns: of the remote in the hand on the foot's side, for the longer
+/// the harder it was. Nothing for a person's own feet.
+std::vector<v1::Command> RumbleCommands(const std::vector<scene::Sound>& sounds,
+                                        const scene::WorldFrame& frame, const scene::Model& model);
 /// A marker of the person at the viewer, now; `number` counts them.
 v1::Command MarkerCommand(int number);
 /// The other mode, or the mode with or without a part, as the key has it (M, L, U, B, K).

@@ -223,22 +223,37 @@ TEST_F(ProgramTest, APictureThatCannotBeWrittenEndsWithOneAndNamesTheFile) {
   EXPECT_THAT(outcome.output, HasSubstr("/nowhere/a.png"));
 }
 
+/// Runs the viewer in a window; Xvfb picks a free display and writes its number, and ends when its
+/// only client leaves.
+std::string InWindow(const std::string& number_file, const std::string& view) {
+  return "sh -c 'exec 3>" + number_file + "; Xvfb -displayfd 3 -screen 0 " +
+         "800x600x24 -nolisten tcp 2>/dev/null & server=$!; " + "for i in $(seq 100); do [ -s " +
+         number_file + " ] && break; sleep 0.1; done; DISPLAY=:$(cat " + number_file + ") " + view +
+         " 2>&1; code=$?; kill $server; exit $code'";
+}
+
+bool HasXvfb() { return std::system("command -v Xvfb >/dev/null 2>&1") == 0; }
+
 TEST_F(ProgramTest, TheWindowOpensOnADisplayAndDraws) {
-  if (std::system("command -v Xvfb >/dev/null 2>&1") != 0) {
+  if (!HasXvfb())
     GTEST_SKIP() << "Xvfb is not installed: the window is not tried (apt install xvfb)";
-  }
-  // Xvfb picks a free display and writes its number; it ends when its only client leaves.
-  const std::string script = "exec 3>" + File("number") + "; Xvfb -displayfd 3 -screen 0 " +
-                             "800x600x24 -nolisten tcp 2>/dev/null & server=$!; " +
-                             "for i in $(seq 100); do [ -s " + File("number") +
-                             " ] && break; sleep 0.1; done; DISPLAY=:$(cat " + File("number") +
-                             ") " + View("--seconds 1.5 --json --width 640 --height 360") +
-                             " 2>&1; code=$?; kill $server; exit $code";
-  const Outcome outcome = RunCommand("sh -c '" + script + "'");
+  const Outcome outcome =
+      RunCommand(InWindow(File("number"), View("--seconds 1.5 --json --width 640 --height 360")));
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   const auto summary = nlohmann::json::parse(outcome.output);
   // llvmpipe on a busy machine; a window that hangs draws one picture or none.
   EXPECT_GE(summary.at("frames_drawn"), 5);
+}
+
+TEST_F(ProgramTest, WithoutASoundCardTheWindowSaysSoAndGoesOn) {
+  if (!HasXvfb())
+    GTEST_SKIP() << "Xvfb is not installed: the window is not tried (apt install xvfb)";
+  // OpenAL's device without output is all that it may use.
+  const Outcome outcome = RunCommand(
+      InWindow(File("number"),
+               "ALSOFT_DRIVERS=null " + View("--sound --seconds 1 --width 320 --height 180")));
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("no sound: "));
 }
 
 }  // namespace
