@@ -182,8 +182,9 @@ class Mannequin {
     };
     ball({0, 0, 0}, {0.051f, 0.043f, 0.064f}, look_.skin, 0.2f);
     ball({0.018f, 0, -0.047f}, {0.024f, 0.025f, 0.021f}, look_.skin, 0.2f);
-    ball({-0.009f, 0, 0.013f}, {0.050f, 0.0465f, 0.057f}, look_.hair, 0.1f);
     ball({0.050f, 0, -0.012f}, {0.010f, 0.006f, 0.012f}, look_.skin, 0.2f);
+    if (look_.plain) return;
+    ball({-0.009f, 0, 0.013f}, {0.050f, 0.0465f, 0.057f}, look_.hair, 0.1f);
     ball({0.039f, 0, -0.037f}, {0.005f, 0.013f, 0.003f}, look_.lips, 0.1f);
     for (const float left : {-1.0f, 1.0f}) {
       ball({0.000f, 0.043f * left, -0.006f}, {0.009f, 0.005f, 0.014f}, look_.skin, 0.2f);
@@ -236,12 +237,14 @@ class Mannequin {
     const auto limb = [&](const Vector3f& a, const Vector3f& b, float radius_a, float radius_b) {
       Limb(w + height_ * (axes * a), w + height_ * (axes * b), radius_a, radius_b, colour);
     };
+    parts_.AddOvalLimb(w, w + 0.048f * height_ * along, axes.col(2), 0.012f * height_,
+                       0.0095f * height_, 1.9f, colour, 0.12f);
+    if (look_.plain) return limb({0, 0.048f, 0}, {0, 0.058f, -0.024f}, 0.017f, 0.014f);
     for (const float x : {0.0175f, 0.006f, -0.006f, -0.0165f}) {
       const float reach = 1 - 8 * std::abs(x - 0.006f);  // The middle finger is the longest.
       const Vector3f knuckle(x, 0.054f * reach, 0.003f), middle(x, 0.064f * reach, -0.019f),
           tip(x, 0.040f, -0.027f);
-      limb({0.5f * x, 0, 0}, knuckle, 0.0135f, 0.0085f);
-      limb(knuckle, middle, 0.0075f, 0.0062f);
+      limb(knuckle, middle, 0.0078f, 0.0062f);
       limb(middle, tip, 0.0062f, 0.0055f);
     }
     limb({0.010f, 0.012f, -0.004f}, {0.026f, 0.034f, -0.014f}, 0.012f, 0.0078f);
@@ -305,15 +308,15 @@ PersonLook MannequinLook() {
 }
 
 PersonLook PlainLook(const Colour& colour) {
-  const Colour darker = 0.8f * colour;
   return {.skin = colour,
-          .hair = darker,
+          .hair = colour,
           .eyes = colour,
-          .lips = darker,
+          .lips = colour,
           .shirt = colour,
           .trousers = colour,
           .left_shoe = colour,
-          .right_shoe = colour};
+          .right_shoe = colour,
+          .plain = true};
 }
 
 void AddPerson(const Anatomy& anatomy, const PersonPose& pose, const PersonLook& look,

@@ -27,6 +27,7 @@ bool Fits(const Anatomy& anatomy, const std::vector<int>& parents);
 /// Colours of a figure.
 struct PersonLook {
   Colour skin, hair, eyes, lips, shirt, trousers, left_shoe, right_shoe;
+  bool plain = false;  ///< Without fingers and features, which a silhouette does not show.
 };
 
 /// A dressed mannequin: left shoe blue, right shoe amber.

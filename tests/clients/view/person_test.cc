@@ -142,6 +142,16 @@ TEST(Figure, TheFaceLooksWhereTheHeadDoes) {
   }
 }
 
+TEST(Figure, ASilhouetteIsDrawnOfFewerParts) {
+  const PersonPose pose = made::Bent({});
+  const Anatomy anatomy = FindAnatomy(made::PersonSkeleton());
+  PartList plain;
+  AddPerson(anatomy, pose, PlainLook(Rgb(0x8fd6ff)), plain);
+  const PartList full = Drawn(pose);
+  EXPECT_LT(plain.limbs.size() + 15, full.limbs.size());
+  EXPECT_LT(plain.balls.size() + 8, full.balls.size());
+}
+
 TEST(Figure, AHandIsClosedAroundARod) {
   const PersonPose pose = made::Bent({});
   const PartList parts = Drawn(pose);
