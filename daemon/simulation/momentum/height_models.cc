@@ -507,9 +507,10 @@ void HeightModels::MixPostures(Pair& pair) const {
   const double error_m2 = std::pow(posture_spread_m(), 2);
   const Filter::Scalar height = hides.filter.Of(HeightRow::Unit(kHeight));
   const double off_m = seen_.height_m - height.mean;
-  const double fit =
-      std::exp(LogNormal(off_m, height.variance + error_m2) -
-               LogNormal(off_m - kHiddenMeanM, height.variance + kHiddenM * kHiddenM));
+  constexpr double kMostLogFit = 10;
+  const double log_fit = LogNormal(off_m, height.variance + error_m2) -
+                         LogNormal(off_m - kHiddenMeanM, height.variance + kHiddenM * kHiddenM);
+  const double fit = std::exp(std::min(log_fit, kMostLogFit));
   Filter begins = hides.filter;
   begins.Forget(kPostureError, error_m2);
   HeightRow row = HeightRow::Unit(kHeight);

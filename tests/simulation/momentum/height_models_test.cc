@@ -223,5 +223,38 @@ TEST(HeightModels, SquatsThatEndElsewhereByTheLoadsLeaveTheHeightToThePosture) {
   for (const double extra : {-0.03, 0.03}) EXPECT_LT(LaterSquatsError(1, extra), 0.25) << extra;
 }
 
+TEST(HeightModels, StayFiniteWhateverIsMeasured) {
+  noise::Random random(1);
+  const auto chance = [&](double share) { return random.Uniform() < share; };
+  for (int trial = 0; trial < 12; ++trial) {
+    HeightModels models(kMadeMassKg, kMadeStepS, 0.028, 0.5, trial % 3 > 0 ? kLearnedPostureM : 0);
+    models.KeepLag(trial % 2 > 0 ? 12 : 0);
+    VerticalInput input;
+    input.load_n.fill(kMadeMassKg * 9.8 / VerticalInput::kGroups);
+    models.Start(input);
+    for (int i = 0; i < 600; ++i) {
+      VerticalInput now = input;
+      for (double& load : now.load_n) {
+        if (chance(0.1)) load *= 4 * random.Uniform();
+        if (chance(0.02)) load = chance(0.5) ? 0 : 1e6 * random.Uniform();
+      }
+      now.cop_valid = chance(0.8);
+      now.cop_m = {random.Uniform(), 10 * random.Uniform()};
+      if (chance(0.003)) models.Land();
+      if (chance(0.003)) models.Reappear();
+      if (chance(0.05)) {
+        models.Coast();
+      } else {
+        models.Advance(now);
+      }
+      if (chance(0.7)) models.SeePosture(chance(0.02) ? 1e3 : 0.5 * random.Uniform() - 0.4);
+      const auto height = models.Height(trial % 2 > 0 ? 7 : 0);
+      ASSERT_TRUE(std::isfinite(height.mean) && std::isfinite(height.variance)) << i;
+      ASSERT_GE(height.variance, 0) << i;
+      ASSERT_TRUE(std::isfinite(models.mass_kg()) && std::isfinite(models.Velocity().mean)) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace footing::momentum
