@@ -46,9 +46,7 @@ struct Estimate {
   double time_s = 0;
   double lag_s = 0;
   bool valid = false;
-  /// False while the height by the loads is more than three deviations from what hands and feet
-  /// allow (about half a metre), or is 10 cm from what the loads alone show since the last rest, or
-  /// is not known to 12 cm, or the loads are not the whole weight.
+  /// False while the height is not known to 12 cm, or the loads are not the whole weight.
   bool trusted = true;
   /// False while the cells carry less or more than a body that neither falls nor rises for seconds:
   /// it stands on something else, too, or carries a load (LoadShare).

@@ -676,50 +676,44 @@ double HeightModels::mass_kg() const {
   return mass_kg_ / (1 - std::clamp(over, -kMostShare, kMostShare));
 }
 
-std::vector<HeightModels::Filter::Scalar> SmoothHeight(double mass_kg, double step_s,
-                                                       double arms_hang_m, double cell_noise_n,
-                                                       const VerticalInput& mean,
-                                                       const std::vector<VerticalInput>& inputs) {
-  if (inputs.empty()) return {};
-  struct Step {
-    Transition transition;
-    HeightVector x;
-    HeightMatrix p;
-  };
-  constexpr CellModel kCells = kCellModels[1];
-  HeightFilter filter;
-  StartFilter(kCells, mass_kg, mean, 0, filter);
-  RestWatch rest;
-  double rest_s = 0, anchor_s = 0;
-  std::vector<Step> steps;
-  steps.reserve(inputs.size());
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const VerticalInput& input = inputs[i];
-    Step step{TransitionOf(kCells, {mass_kg, step_s, std::max(cell_noise_n, kLeastNoiseN)},
-                           inputs[i > 0 ? i - 1 : 0], input),
-              {},
-              {}};
-    filter.Predict(step.transition.a, step.transition.u, step.transition.q);
-    const double raw_mps2 = input.total_n() / mass_kg - kStandardGravityMps2;
-    rest.Advance(raw_mps2, input, step_s);
-    rest_s += step_s;
-    anchor_s += step_s;
-    if (rest.rests() && rest_s >= kRestLookS) {
-      rest_s = 0;
-      HeightRow level = HeightRow::Unit(kSlow);
-      for (int k = 0; k < kGroups; ++k) {
-        level(kGains + k) = input.load_n[static_cast<std::size_t>(k)] / mass_kg;
-      }
-      LookAtStillness(level, rest.level_mps2(), kSlowMps2, filter);
+namespace {
+
+/// Looks of the offline filter at a body that rests, and at where bodies are.
+class OfflineLooks {
+ public:
+  void Advance(double raw_mps2, const VerticalInput& input, double step_s, double arms_hang_m,
+               HeightFilter& filter) {
+    rest_.Advance(raw_mps2, input, step_s);
+    rest_s_ += step_s;
+    anchor_s_ += step_s;
+    if (rest_.rests() && std::abs(rest_.level_mps2()) < kStillLoadsMps2 && rest_s_ >= kLookS) {
+      rest_s_ = 0;
+      LookAt(HeightRow::Unit(kVelocity), {{{kStillShare, 0, 0.006}, {1 - kStillShare, 0, 0.04}}},
+             filter);
     }
-    if (anchor_s >= kAnchorLookS && raw_mps2 > -kLoadedShare * kStandardGravityMps2) {
-      anchor_s = 0;
-      LookWithoutPosture(false, arms_hang_m, filter);
-    }
-    step.x = filter.x();
-    step.p = filter.p();
-    steps.push_back(step);
+    if (anchor_s_ < kAnchorLookS || raw_mps2 < -kLoadedShare * kStandardGravityMps2) return;
+    anchor_s_ = 0;
+    LookWithoutPosture(false, arms_hang_m, filter);
+    const HeightFilter::Scalar now = filter.Of(HeightRow::Unit(kHeight));
+    const Moments cut = Below({now.mean, now.variance}, kHighestM);
+    filter.SetMoments(HeightRow::Unit(kHeight), {cut.mean, cut.variance});
   }
+
+ private:
+  static constexpr double kStillLoadsMps2 = 0.14, kHighestM = 0.013;
+
+  RestWatch rest_;
+  double rest_s_ = 0, anchor_s_ = 0;
+};
+
+struct SmoothedStep {
+  Transition transition;
+  HeightVector x;
+  HeightMatrix p;
+};
+
+/// Rauch-Tung-Striebel.
+std::vector<HeightFilter::Scalar> Backwards(const std::vector<SmoothedStep>& steps) {
   std::vector<HeightFilter::Scalar> out(steps.size());
   HeightVector x = steps.back().x;
   HeightMatrix p = steps.back().p;
@@ -734,6 +728,30 @@ std::vector<HeightModels::Filter::Scalar> SmoothHeight(double mass_kg, double st
     out[i] = {x(kHeight), std::max(0.0, p(kHeight, kHeight))};
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<HeightModels::Filter::Scalar> SmoothHeight(double mass_kg, double step_s,
+                                                       double arms_hang_m, double cell_noise_n,
+                                                       const VerticalInput& mean,
+                                                       const std::vector<VerticalInput>& inputs) {
+  if (inputs.empty()) return {};
+  constexpr CellModel kInaccurate = kCellModels[1];
+  const Scale scale{mass_kg, step_s, std::max(cell_noise_n, kLeastNoiseN)};
+  HeightFilter filter;
+  StartFilter(kInaccurate, mass_kg, mean, 0, filter);
+  OfflineLooks looks;
+  std::vector<SmoothedStep> steps;
+  steps.reserve(inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Transition step = TransitionOf(kInaccurate, scale, inputs[i > 0 ? i - 1 : 0], inputs[i]);
+    filter.Predict(step.a, step.u, step.q);
+    looks.Advance(inputs[i].total_n() / mass_kg - kStandardGravityMps2, inputs[i], step_s,
+                  arms_hang_m, filter);
+    steps.push_back({step, filter.x(), filter.p()});
+  }
+  return Backwards(steps);
 }
 
 }  // namespace footing::momentum
