@@ -168,11 +168,7 @@ Result<AcceptanceVerdict> RunAcceptance(Connection& session, const AcceptanceOpt
   for (const auto& rig : session.setup()) {
     if (rig.rig == options.rig && !rig.layout.preset.empty()) layout = rig.layout;
   }
-  recording::WriterSettings settings;
-  settings.chunks.compress = true;
-  settings.library = std::string("footing-ctl ") + cli::Version();
-  settings.replace = options.replace;
-  auto writer = recording::RecordingWriter::Create(options.out, settings);
+  auto writer = CreateRecording(options.out, options.replace);
   if (!writer) return writer.error();
   return Run(session, options, layout, std::move(*writer))
       .Go(guide::PlanOf(options.minutes, body_devices > 0, boards > 0));

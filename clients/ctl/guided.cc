@@ -195,6 +195,14 @@ const std::vector<std::string>& GuidedChannels() {
   return channels;
 }
 
+Result<recording::RecordingWriter> CreateRecording(const std::string& path, bool replace) {
+  recording::WriterSettings settings;
+  settings.chunks.compress = true;
+  settings.library = std::string("footing-ctl ") + cli::Version();
+  settings.replace = replace;
+  return recording::RecordingWriter::Create(path, settings);
+}
+
 std::vector<stream::DeviceStatus> DevicesOf(const Connection& session, const std::string& rig) {
   std::vector<stream::DeviceStatus> devices;
   for (const auto& device : session.status()) {

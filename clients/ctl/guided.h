@@ -6,6 +6,7 @@
 #include "clients/ctl/commands.h"
 #include "common/guide/camera_step.h"
 #include "common/guide/recent.h"
+#include "common/recording/recording_writer.h"
 #include "common/stream/setup.h"
 
 namespace footing::ctl {
@@ -20,6 +21,9 @@ bool EnterPressed();
 
 /// The channels that a guided command needs.
 const std::vector<std::string>& GuidedChannels();
+
+/// The recording of a guided command: compressed, and stamped with this program's version.
+Result<recording::RecordingWriter> CreateRecording(const std::string& path, bool replace);
 
 /// Attached devices of a rig.
 std::vector<stream::DeviceStatus> DevicesOf(const Connection& session, const std::string& rig);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/ctl/commands.h"
+#include "clients/ctl/guided.h"
 #include "common/cli/cli.h"
 #include "common/guide/own_motion.h"
 #include "common/recording/recording_writer.h"
@@ -111,11 +112,7 @@ class GuidedMotions {
 Result<void> RunMotions(const MotionsOptions& options, const Shared& shared) {
   const auto session = OpenSimulation(shared, {}, "footing-sim --engine pose --subject FILE");
   if (!session) return session.error();
-  recording::WriterSettings settings;
-  settings.chunks.compress = true;
-  settings.library = std::string("footing-ctl ") + cli::Version();
-  settings.replace = options.replace;
-  auto writer = recording::RecordingWriter::Create(options.out, settings);
+  auto writer = CreateRecording(options.out, options.replace);
   if (!writer) return writer.error();
   GuidedMotions motions(**session, options, std::move(writer).value());
   if (const auto done = motions.Go(); !done) return done;

@@ -407,11 +407,7 @@ Result<void> RunSway(Connection& connection, const SwayOptions& options,
   const OutputFiles files(WithoutEnding(options.out.empty() ? "sway" : options.out));
   session.recording = files.recording;
   if (const auto good = files.CheckCreatable(options.replace); !good) return good.error();
-  recording::WriterSettings settings;
-  settings.chunks.compress = true;
-  settings.library = session.program;
-  settings.replace = options.replace;
-  auto writer = recording::RecordingWriter::Create(files.recording, settings);
+  auto writer = CreateRecording(files.recording, options.replace);
   if (!writer) return writer.error();
   const auto done = LiveSway(connection, options, session, std::move(*writer)).Go();
   if (session.trials.empty() && !done) return done.error();

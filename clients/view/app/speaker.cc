@@ -23,7 +23,7 @@ namespace {
 constexpr int kSampleRateHz = 44100;
 constexpr std::size_t kPlayers = 16;
 
-/// OpenAL plays into a device without output where there is no other.
+/// OpenAL plays into a device without output if it finds nothing else.
 bool IsSilent(ALCdevice* device) {
   const ALCchar* name = alcGetString(device, ALC_ALL_DEVICES_SPECIFIER);
   return name == nullptr || std::string(name) == "No Output";

@@ -144,6 +144,15 @@ Transition TransitionOf(const CellModel& cells, const Scale& scale, const Vertic
   return out;
 }
 
+/// Share of each group's gain error in a load, over `divisor`.
+HeightRow GainsRow(const VerticalInput& input, double divisor) {
+  HeightRow row = HeightRow::Zero();
+  for (int i = 0; i < kGroups; ++i) {
+    row(kGains + i) = input.load_n[static_cast<std::size_t>(i)] / divisor;
+  }
+  return row;
+}
+
 /// The body stands still in its T-pose, in which all gains together give the weight.
 void StartFilter(const CellModel& cells, double mass_kg, const VerticalInput& mean,
                  double posture_m, HeightFilter& filter) {
@@ -155,10 +164,7 @@ void StartFilter(const CellModel& cells, double mass_kg, const VerticalInput& me
   for (int i = kGains; i < kPlay; ++i) p(i, i) += cells.gain * cells.gain;
   p(kPostureError, kPostureError) = posture_m * posture_m;
   filter.Start(HeightVector::Zero(), p);
-  HeightRow row = HeightRow::Unit(kSlow);
-  for (int i = 0; i < kGroups; ++i) {
-    row(kGains + i) = mean.load_n[static_cast<std::size_t>(i)] / mass_kg;
-  }
+  const HeightRow row = HeightRow::Unit(kSlow) + GainsRow(mean, mass_kg);
   const double error = std::max(cells.weight, kLeastWeight) * kStandardGravityMps2;
   filter.Update(row, 0, error * error);
   filter.Remember(HeightRow::Unit(kHeight));
@@ -379,10 +385,7 @@ void HeightModels::FollowTPose(double height_m) {
 }
 
 HeightRow HeightModels::LevelRow() const {
-  HeightRow row = HeightRow::Unit(kSlow);
-  for (int i = 0; i < kGroups; ++i) {
-    row(kGains + i) = last_.load_n[static_cast<std::size_t>(i)] / mass_kg_;
-  }
+  HeightRow row = HeightRow::Unit(kSlow) + GainsRow(last_, mass_kg_);
   row(kPlay) = -last_.play / mass_kg_;
   return row;
 }
@@ -547,7 +550,6 @@ void HeightModels::MixCells() {
     if (ProbabilityOf(pair) > ProbabilityOf(models_[best])) best = c;
   }
   if (IsLost(best)) {
-    ForEach([&](std::size_t, Model& model) { model.filter.Remember(HeightRow::Unit(kHeight)); });
     Begin(kLandingM, 0, kStandsMps);
     return;
   }
@@ -661,11 +663,7 @@ double HeightModels::acceleration_mps2() const {
 }
 
 HeightRow HeightModels::OverweightRow() const {
-  HeightRow row = HeightRow::Zero();
-  for (int i = 0; i < kGroups; ++i) {
-    row(kGains + i) = mean_.load_n[static_cast<std::size_t>(i)] / (mass_kg_ * kStandardGravityMps2);
-  }
-  return row;
+  return GainsRow(mean_, mass_kg_ * kStandardGravityMps2);
 }
 
 double HeightModels::mass_kg() const {

@@ -51,7 +51,7 @@ class HeightModels {
   static constexpr std::size_t kCells = 7;
 
   /// `arms_hang_m` is Subject's, `cell_noise_n` the T-pose's. `posture_spread_m`: standard
-  /// deviation of the height of a posture that shows it; 0 if there are no postures.
+  /// deviation of the height of a posture that shows it; 0: postures are not asked.
   HeightModels(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n,
                double posture_spread_m);
 

@@ -279,7 +279,7 @@ Result<reconstruction::Models> PoseModels::Of(const std::string& code) const {
   if (const auto kind = model::CheckKind(own->model, "person", path); !kind) return kind.error();
   const auto& subjects = own->model.provenance.subjects;
   if (subjects.size() != 1 || model::SubjectName(subjects[0]) != model::SubjectName(code)) {
-    return InvalidData(path + ": is of " + (subjects.empty() ? "nobody" : subjects[0]) +
+    return InvalidData(path + ": is of " + (subjects.empty() ? "no subject" : subjects[0]) +
                        ", not of " + code + "; make it with footing-train person --subject " +
                        code);
   }
