@@ -21,6 +21,7 @@
 #include "clients/log/foxglove.h"
 #include "clients/log/osc_out.h"
 #include "clients/log/record.h"
+#include "clients/log/smoothed.h"
 #include "common/base/json_text.h"
 #include "common/base/text.h"
 #include "common/base/units.h"
@@ -102,11 +103,28 @@ std::optional<BodyFormat> BodyFormatOf(const std::string& format) {
   return std::nullopt;
 }
 
+/// What an export does besides its format.
+struct ExportOptions {
+  BidsOptions bids;
+  std::string skeleton;
+  bool tidy = false;
+  std::optional<int> lag_ms;
+};
+
+/// Of the poses of a body that was exported, where it has no other lag.
+constexpr int kExportLagMs = 200;
+
 Result<ordered_json> RunBodies(const std::string& file, const std::string& format, BodyFormat body,
-                               const std::string& folder, bool replace, BvhSkeleton skeleton) {
-  const auto motions = ExportBodies(file, folder, body, replace, skeleton);
+                               const std::string& folder, const ExportOptions& options) {
+  const int lag_ms = options.lag_ms.value_or(kExportLagMs);
+  const SmoothedCopy copy(file, lag_ms, folder);
+  const auto motions =
+      ExportBodies(copy.path(), folder, body, options.bids.replace,
+                   options.skeleton == "humanoid" ? BvhSkeleton::kHumanoid : BvhSkeleton::kCmu);
   if (!motions) return motions.error();
   ordered_json out{{"file", file}, {"format", format}, {"files", ordered_json::array()}};
+  if (copy.path() != file) out["smoothed_ms"] = lag_ms;
+  if (!copy.why_live().empty()) out["not_smoothed"] = copy.why_live();
   for (const ExportedMotion& motion : *motions) {
     out["files"].push_back({{"path", motion.path},
                             {"subject", motion.subject},
@@ -179,19 +197,23 @@ Result<ordered_json> RunBids(const std::string& file, const std::string& folder,
 }
 
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
-                               const std::string& folder, const BidsOptions& of_bids,
-                               const std::string& skeleton, bool tidy) {
+                               const std::string& folder, const ExportOptions& options) {
+  const BidsOptions& of_bids = options.bids;
+  const bool tidy = options.tidy;
+  const auto body = BodyFormatOf(format);
   if (tidy && format != "csv") return UsageError("--tidy needs --format csv");
-  if (!skeleton.empty() && format != "bvh") return UsageError("--skeleton needs --format bvh");
+  if (!options.skeleton.empty() && format != "bvh") {
+    return UsageError("--skeleton needs --format bvh");
+  }
+  if (options.lag_ms && !body) {
+    return UsageError("--lag-ms needs --format bvh, trc, mot, c3d or gltf");
+  }
   if (format == "bids") return RunBids(file, folder, of_bids);
   if (!of_bids.subject.empty() || !of_bids.task.empty()) {
     return UsageError("--subject and --task need --format bids");
   }
   const bool replace = of_bids.replace;
-  if (const auto body = BodyFormatOf(format)) {
-    return RunBodies(file, format, *body, folder, replace,
-                     skeleton == "humanoid" ? BvhSkeleton::kHumanoid : BvhSkeleton::kCmu);
-  }
+  if (body) return RunBodies(file, format, *body, folder, options);
   if (format == "xdf") return RunXdf(file, folder, replace);
   if (format == "foxglove") return RunFoxglove(file, folder, replace);
   if (format != "csv") {
@@ -288,10 +310,8 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   const auto file = std::make_shared<std::string>();
   const auto format = std::make_shared<std::string>();
   const auto folder = std::make_shared<std::string>();
-  const auto skeleton = std::make_shared<std::string>();
-  const auto tidy = std::make_shared<bool>(false);
-  const auto of_bids = std::make_shared<BidsOptions>();
-  of_bids->version = cli::Version();
+  const auto options = std::make_shared<ExportOptions>();
+  options->bids.version = cli::Version();
   command->add_option("FILE", *file, "Recording, MCAP file")->required();
   command
       ->add_option(
@@ -311,22 +331,26 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
                    "two; beside them the stated errors of the angles); with bids the data set, "
                    "created if it does not exist")
       ->required();
-  command->add_option("--subject", of_bids->subject,
+  command->add_option("--subject", options->bids.subject,
                       "With bids: label of the subject, letters and digits (default 01)");
   command->add_option(
-      "--task", of_bids->task,
+      "--task", options->bids.task,
       "With bids: label of the task, letters and digits (default: the file's name)");
   command
-      ->add_option("--skeleton", *skeleton,
+      ->add_option("--skeleton", options->skeleton,
                    "With bvh: cmu (joints named as CMU's, as recorded; default) or humanoid (a "
                    "T-pose at rest and the names of Unity's human bones)")
       ->check(CLI::IsMember({"cmu", "humanoid"}));
-  command->add_flag("--tidy", *tidy,
+  command->add_flag("--tidy", options->tidy,
                     "With csv: fewer columns, named by joint with the unit last, and a codebook");
-  command->add_flag("--force", of_bids->replace, "Overwrite existing files");
+  command
+      ->add_option("--lag-ms", options->lag_ms,
+                   "Of reconstructed bodies: time after a pose that it may use, ms: 0 (as it was "
+                   "live), 100 or 200 (default 200)")
+      ->check(CLI::IsMember({0, 100, 200}));
+  command->add_flag("--force", options->bids.replace, "Overwrite existing files");
   command->callback([=, &shared] {
-    Finish(RunExport(*file, *format, WithoutEndSlashes(*folder), *of_bids, *skeleton, *tidy),
-           shared);
+    Finish(RunExport(*file, *format, WithoutEndSlashes(*folder), *options), shared);
   });
 }
 

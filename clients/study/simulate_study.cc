@@ -5,7 +5,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -27,6 +25,7 @@
 #include "common/base/text.h"
 #include "common/base/units.h"
 #include "common/cli/cli.h"
+#include "common/runtime/child.h"
 #include "common/runtime/clock.h"
 
 namespace footing::study::simulate {
@@ -36,33 +35,6 @@ constexpr double kStartsWithinS = 30;
 /// Turns between two looks at whether the session has ended.
 constexpr int kLookEvery = 256;
 constexpr double kLookEveryS = 0.02;
-
-/// A folder for sockets, whose paths must be short; removed with all it holds.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string path = (std::filesystem::temp_directory_path() / "footing-XXXXXX").string();
-    if (::mkdtemp(path.data()) != nullptr) path_ = path;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
-std::string LastLine(const std::string& path) {
-  std::ifstream in(path);
-  std::string line, last;
-  while (std::getline(in, line)) last = line;
-  return last;
-}
 
 /// The processes of one session and the time that they share.
 class Run {
@@ -92,7 +64,7 @@ class Run {
 
   /// Until the session has ended.
   Result<void> Finish() {
-    Child& study = children_.at("footing-study");
+    process::Child& study = children_.at("footing-study");
     for (int turn = 0;; ++turn) {
       const bool given = Pass();
       if (!given || !keeper_ || turn % kLookEvery == 0) {
@@ -125,12 +97,13 @@ class Run {
   Result<void> StartChild(const std::string& program, std::vector<std::string> words) {
     std::map<std::string, std::string> environment = {{"XDG_STATE_HOME", sockets_}};
     if (keeper_) environment[clock::kTimekeeperVariable] = sockets_ + "/time";
-    auto child = Child::Start({program, std::move(words), std::move(environment), Log(program)});
+    auto child =
+        process::Child::Start({program, std::move(words), std::move(environment), Log(program)});
     if (!child) return child.error();
     const auto place = children_.insert_or_assign(program, std::move(*child)).first;
     const auto gone = [&] { return place->second.ExitCode().has_value(); };
     if (keeper_ && !keeper_->AwaitFollower(kStartsWithinS, gone)) {
-      return Failure(program + " does not start: " + LastLine(Log(program)));
+      return Failure(program + " does not start: " + process::LastLine(Log(program)));
     }
     return {};
   }
@@ -164,7 +137,7 @@ class Run {
 
   Error Broken() const {
     return Failure("the session of " + simulated_.session.participant +
-                   " ended: " + LastLine(Log("footing-study")) + "; its files are in " +
+                   " ended: " + process::LastLine(Log("footing-study")) + "; its files are in " +
                    simulated_.study_folder);
   }
 
@@ -174,13 +147,13 @@ class Run {
   const std::int64_t begin_ns_ = NowNs();
   JournalTail tail_;
   std::string interface_;
-  std::map<std::string, Child> children_;
+  std::map<std::string, process::Child> children_;
 };
 
 }  // namespace
 
 Result<void> Simulate(const SimulatedSession& simulated) {
-  const TemporaryFolder sockets;
+  const process::TemporaryFolder sockets;
   if (sockets.path().empty()) return Failure("cannot make a temporary folder for sockets");
   if (const auto done = journal::MakeFolder(simulated.study_folder); !done) return done;
   std::optional<clock::Timekeeper> keeper;
@@ -207,77 +180,6 @@ std::vector<records::Event> JournalTail::ReadNew() {
     if (auto event = records::ParseLine(line)) events.push_back(std::move(event).value());
   }
   return events;
-}
-
-namespace {
-
-constexpr int kNotStarted = 127;
-
-int CodeOf(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
-
-/// In the child: becomes the program.
-[[noreturn]] void Become(const std::string& path, const Child::Options& options) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const int input = ::open("/dev/null", O_RDONLY);
-  const int log = ::open(options.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  if (input < 0 || log < 0) ::_exit(kNotStarted);
-  ::dup2(input, STDIN_FILENO);
-  ::dup2(log, STDOUT_FILENO);
-  ::dup2(log, STDERR_FILENO);
-  for (const auto& [name, value] : options.environment) {
-    ::setenv(name.c_str(), value.c_str(), 1);
-  }
-  std::vector<char*> arguments{const_cast<char*>(path.c_str())};
-  for (const std::string& word : options.words) {
-    arguments.push_back(const_cast<char*>(word.c_str()));
-  }
-  arguments.push_back(nullptr);
-  ::execv(path.c_str(), arguments.data());
-  ::_exit(kNotStarted);
-}
-
-}  // namespace
-
-Result<Child> Child::Start(const Options& options) {
-  std::error_code error;
-  const auto own = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path folder =
-      options.folder.empty() ? own.parent_path() : std::filesystem::path(options.folder);
-  const std::string path = (folder / options.program).string();
-  if (error || ::access(path.c_str(), X_OK) != 0) {
-    return Failure("cannot start " + path + ": " +
-                   (error ? error.message() : std::strerror(errno)) + "; build or install it");
-  }
-  const pid_t process = ::fork();
-  if (process < 0) return Failure(std::string("fork: ") + std::strerror(errno));
-  if (process == 0) Become(path, options);
-  return Child(process);
-}
-
-Child::Child(Child&& other) noexcept
-    : process_(std::exchange(other.process_, -1)), exit_code_(other.exit_code_) {}
-
-Child& Child::operator=(Child&& other) noexcept {
-  std::swap(process_, other.process_);
-  std::swap(exit_code_, other.exit_code_);
-  return *this;
-}
-
-std::optional<int> Child::ExitCode() {
-  int status = 0;
-  if (!exit_code_ && process_ > 0 && ::waitpid(process_, &status, WNOHANG) == process_) {
-    exit_code_ = CodeOf(status);
-  }
-  return exit_code_;
-}
-
-void Child::Kill() {
-  if (process_ <= 0 || ExitCode()) return;
-  ::kill(process_, SIGKILL);
-  int status = 0;
-  while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-  }
-  exit_code_ = CodeOf(status);
 }
 
 namespace {

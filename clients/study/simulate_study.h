@@ -2,12 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <sys/types.h>
 
 #include "clients/study/plan/phases.h"
 #include "clients/study/report/event.h"
@@ -44,35 +41,6 @@ class JournalTail {
  private:
   std::string path_;
   std::size_t read_bytes_ = 0;
-};
-
-/// Another program as a child process that never outlives this one.
-class Child {
- public:
-  struct Options {
-    std::string program;
-    std::vector<std::string> words;
-    std::map<std::string, std::string> environment;  ///< Added to this process's own.
-    std::string log;          ///< File of both its outputs; written from its start.
-    std::string folder = {};  ///< Where the program is; empty: in the folder of this one.
-  };
-  static Result<Child> Start(const Options& options);
-
-  Child(Child&& other) noexcept;
-  Child& operator=(Child&& other) noexcept;
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  ~Child() { Kill(); }
-
-  /// The exit code once it has ended, by itself or by a signal (128 + signal); does not wait.
-  std::optional<int> ExitCode();
-  /// Kills the process at once; returns when it is gone.
-  void Kill();
-
- private:
-  explicit Child(pid_t process) : process_(process) {}
-  pid_t process_ = -1;
-  std::optional<int> exit_code_;
 };
 
 /// Options of a simulated study of several sessions.

@@ -63,10 +63,17 @@ def smooth(stage, recording, frames):
     begins = []
     for name in (recording, copy):
         out = stage.folder / name.stem
-        done = stage.run("footing-log", "export", name, "--format", "mot", "--out", out, "--json")
+        done = stage.run("footing-log", "export", name, "--format", "mot", "--lag-ms", 0, "--out", out, "--json")
         assert done.returncode == 0, done
         begins.append(json.loads(done.stdout)["files"][0]["begin_s"])
     assert abs(begins[0] - begins[1] - 0.2) < 0.03, begins
+    # By default an export does the same.
+    out = stage.folder / "default"
+    done = stage.run_json("footing-log", "export", recording, "--format", "mot", "--out", out)
+    assert done["smoothed_ms"] == 200 and "not_smoothed" not in done, done
+    assert sorted(file.name for file in out.iterdir()) == sorted(file.name for file in (stage.folder / copy.stem).iterdir())
+    for file in sorted(out.glob("*.mot")):
+        assert file.read_text() == (stage.folder / copy.stem / file.name).read_text(), file
 
 
 if __name__ == "__main__":

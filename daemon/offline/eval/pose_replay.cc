@@ -55,6 +55,24 @@ PoseRecording GatherPose(const std::vector<v1::Tick>& ticks) {
   return recording;
 }
 
+bool WearsInsoles(const PoseRecording& recording) {
+  return std::any_of(recording.inputs.begin(), recording.inputs.end(), [](const auto& input) {
+    const v1::PoseInput& pose = input.second.pose();
+    return pose.left_foot().insole_cells_size() > 0 || pose.right_foot().insole_cells_size() > 0;
+  });
+}
+
+/// The subjects' own models are where footing-sim had them, where no other folder is named.
+ModelFolders WithRecorded(ModelFolders folders, const std::vector<v1::Tick>& ticks) {
+  const std::string config = ConfigOf(ticks).json();
+  const std::string recorded = text::SettingIn(config, "subject_models").value_or("");
+  std::error_code error;
+  if (folders.subjects.empty() && std::filesystem::is_directory(recorded, error)) {
+    folders.subjects = recorded;
+  }
+  return folders;
+}
+
 /// A frame without what differs from run to run, and without the texts for people, whose causes are
 /// not all recorded.
 std::string ComparableFrame(v1::CharacterFrame frame) {
@@ -204,7 +222,7 @@ Result<EngineReplay> ReplayPose(const std::vector<v1::Tick>& ticks, const ModelF
   if (const auto whole = CheckFirstStep(recording.frames.begin()->first); !whole) {
     return whole.error();
   }
-  auto rerun = PoseRerun::Create(recording, folders);
+  auto rerun = PoseRerun::Create(recording, WithRecorded(folders, ticks));
   if (!rerun) return rerun.error();
   const auto ran =
       EachFrame(recording, **rerun, result.last_step,
@@ -317,11 +335,14 @@ Result<std::uint64_t> SmoothPose(const std::string& path, const std::string& out
     return InvalidData(path +
                        ": has no frame of the pose engine: record footing-sim --engine pose");
   }
-  PoseRecording recording = GatherPose(recorded->simulation);
+  const PoseRecording recording = GatherPose(recorded->simulation);
+  if (WearsInsoles(recording)) {
+    return InvalidData(path + ": has insoles, with which poses have no lag");
+  }
   if (const auto whole = CheckFirstStep(recording.frames.begin()->first); !whole) {
     return Error{whole.error().kind, path + ": " + whole.error().message};
   }
-  auto rerun = PoseRerun::Create(recording, folders, lag_s);
+  auto rerun = PoseRerun::Create(recording, WithRecorded(folders, recorded->simulation), lag_s);
   if (!rerun) return rerun.error();
   std::uint64_t last_step = 0;
   std::map<std::uint64_t, v1::CharacterFrame> frames;
@@ -435,7 +456,7 @@ void AddModelFolders(CLI::App& command, ModelFolders& folders) {
                      "Folder of the pose engine's models (default: the installed ones)");
   command.add_option(
       "--subject-models", folders.subjects,
-      "Folder of the subjects' own models, CODE.fmodel, if the pose engine had them");
+      "Folder of the subjects' own models, CODE.fmodel (default: the one that footing-sim had)");
 }
 
 }  // namespace

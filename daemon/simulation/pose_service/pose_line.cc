@@ -51,17 +51,22 @@ using serving::Answer;
 
 namespace {
 
-/// Settings that the engine runs with; its subject stands in the frames.
-std::string EffectiveConfig(const serving::Config& common, const Config& config) {
-  using nlohmann::ordered_json;
-  return serving::EffectiveSettings(common, "pose", config)
-      .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
 std::string SubjectModelsOf(const Config& config) {
   if (!config.subject_models.empty() || config.subject.empty()) return config.subject_models;
   const auto folder = std::filesystem::path(config.subject).parent_path();
   return folder.empty() ? "." : folder.string();
+}
+
+/// Settings that the engine runs with; its subject stands in the frames. The folder of models is
+/// the one in use, so that a recording can be run again anywhere.
+std::string EffectiveConfig(const serving::Config& common, Config config) {
+  using nlohmann::ordered_json;
+  config.subject_models = SubjectModelsOf(config);
+  std::error_code error;
+  const auto models = std::filesystem::absolute(config.subject_models, error);
+  if (!config.subject_models.empty() && !error) config.subject_models = models.lexically_normal();
+  return serving::EffectiveSettings(common, "pose", config)
+      .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -416,6 +421,38 @@ reconstruction::JointInputs GetJoints(const v1::PoseInput& message) {
   return joints;
 }
 
+/// Adds the segments that have turned.
+void SetTurns(const reconstruction::BodyTurns& turns, v1::PoseInput& message) {
+  for (std::size_t site = 0; site < turns.size(); ++site) {
+    const arms::HandState& turn = turns[site];
+    if (!turn.valid) continue;
+    v1::PoseTurn& one = *message.add_turns();
+    one.set_segment(reconstruction::kBodySiteNames[site]);
+    // Axes and not a quaternion: a recording is run again to the same bits.
+    wire::Write(turn.turn_W.col(0), *one.mutable_x());
+    wire::Write(turn.turn_W.col(1), *one.mutable_y());
+    wire::Write(turn.turn_W.col(2), *one.mutable_z());
+    one.set_heading_sd_rad(Finite(turn.heading_sd_rad));
+    one.set_inclination_sd_rad(Finite(turn.inclination_sd_rad));
+  }
+}
+
+reconstruction::BodyTurns GetTurns(const v1::PoseInput& message) {
+  reconstruction::BodyTurns turns = {};
+  for (const v1::PoseTurn& one : message.turns()) {
+    const auto name = std::find(reconstruction::kBodySiteNames.begin(),
+                                reconstruction::kBodySiteNames.end(), one.segment());
+    if (name == reconstruction::kBodySiteNames.end()) continue;
+    arms::HandState& turn =
+        turns[static_cast<std::size_t>(name - reconstruction::kBodySiteNames.begin())];
+    turn.valid = true;
+    turn.turn_W << FromProto(one.x()), FromProto(one.y()), FromProto(one.z());
+    turn.heading_sd_rad = Finite(one.heading_sd_rad());
+    turn.inclination_sd_rad = Finite(one.inclination_sd_rad());
+  }
+  return turns;
+}
+
 void SetSide(const PoseInputs& inputs, std::size_t side, v1::PoseFoot& foot, v1::PoseHand& hand) {
   WriteLoads(inputs.sensors.loads.feet[side], foot);
   WriteImpulse(inputs.impulses[side], foot);
@@ -450,6 +487,7 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   SetSide(inputs, 0, *pose.mutable_left_foot(), *pose.mutable_left_hand());
   SetSide(inputs, 1, *pose.mutable_right_foot(), *pose.mutable_right_hand());
   SetJoints(inputs.sensors.joints, pose);
+  SetTurns(inputs.sensors.turns, pose);
   pose.set_calibrate_number(inputs.calibrate_number);
   pose.set_subject_number(inputs.subject_number);
   pose.set_subject_code(wire::Utf8(subject.code));
@@ -473,6 +511,7 @@ PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
   GetSide(pose.left_foot(), pose.left_hand(), 0, inputs);
   GetSide(pose.right_foot(), pose.right_hand(), 1, inputs);
   inputs.sensors.joints = GetJoints(pose);
+  inputs.sensors.turns = GetTurns(pose);
   for (reconstruction::HandInput& hand : inputs.sensors.hands) {
     hand.of_skeleton = hand.of_skeleton || pose.hands_of_skeleton();
   }

@@ -10,6 +10,7 @@
 #include "clients/study/session/journal.h"
 #include "clients/study/simulate_study.h"
 #include "common/base/units.h"
+#include "common/runtime/child.h"
 #include "common/runtime/clock.h"
 
 namespace footing::study {
@@ -45,12 +46,12 @@ class Laboratory : public testing::Test {
 
   void Start(const std::string& program, const std::vector<std::string>& words) {
     auto child =
-        simulate::Child::Start({.program = program,
-                                .words = words,
-                                .environment = {{"XDG_STATE_HOME", folder_},
-                                                {clock::kTimekeeperVariable, folder_ + "/time"}},
-                                .log = folder_ + "/" + program + ".log",
-                                .folder = FOOTING_BINARY_DIR "/bin"});
+        process::Child::Start({.program = program,
+                               .words = words,
+                               .environment = {{"XDG_STATE_HOME", folder_},
+                                               {clock::kTimekeeperVariable, folder_ + "/time"}},
+                               .log = folder_ + "/" + program + ".log",
+                               .folder = FOOTING_BINARY_DIR "/bin"});
     ASSERT_TRUE(child) << child.error().message;
     const auto place = children_.insert_or_assign(program, std::move(*child)).first;
     const auto gone = [&] { return place->second.ExitCode().has_value(); };
@@ -62,7 +63,7 @@ class Laboratory : public testing::Test {
     Start("footing-study", {"run", folder_ + "/s.json", "--participant", participant,
                             "--unattended", "--folder", folder_ + "/s.study", "--sensor",
                             Socket("sensor"), "--simulation", Socket("simulation")});
-    simulate::Child& study = children_.at("footing-study");
+    process::Child& study = children_.at("footing-study");
     while (keeper_->GiveTurn() && !study.ExitCode()) {
     }
     EXPECT_EQ(study.ExitCode(), 0);
@@ -73,7 +74,7 @@ class Laboratory : public testing::Test {
 
   std::string folder_;
   std::optional<clock::Timekeeper> keeper_;
-  std::map<std::string, simulate::Child> children_;
+  std::map<std::string, process::Child> children_;
 };
 
 /// Beside this the experimenter has two prompts to answer, consent and the end of the

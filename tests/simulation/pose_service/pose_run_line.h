@@ -74,6 +74,17 @@ struct Line {
     joints[7] = {true, {0, 0.1, 0.9}, {0.04, 0.05, 0.1}, {0.001, -0.0005, 0.002}};
     told.sensors.hands[0].of_skeleton = i % 2 == 0;
   }
+  /// Worn sensors tell of a belt that turns and of a thigh.
+  void Turn(std::size_t i) {
+    arms::HandState turn;
+    turn.valid = true;
+    turn.heading_sd_rad = 0.12;
+    turn.inclination_sd_rad = 0.02;
+    const double angle_rad = 1e-3 * static_cast<double>(i);
+    turn.turn_W = Eigen::AngleAxisd(angle_rad, Eigen::Vector3d(0.6, 0.8, 0)).matrix();
+    told.sensors.turns[static_cast<std::size_t>(made::BodySite::kPelvis)] = turn;
+    told.sensors.turns[static_cast<std::size_t>(made::BodySite::kRightThigh)] = turn;
+  }
   /// One step with the i-th frame that was measured.
   void Step(std::size_t i) {
     told.sensors = measured[i % measured.size()];

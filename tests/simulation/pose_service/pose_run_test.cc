@@ -172,6 +172,7 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
     if (i % 200 > 150) line.Wear(i);
     if (i % 100 > 70) line.HoldAnArm();
     if (i % 90 > 40) line.SeeJoints(i);
+    if (i % 130 > 30) line.Turn(i);
     if (i % 200 == 0) line.told.insoles = {};
     line.inputs.Write(line.told);
     line.run.StepOnSimThread(line.inputs, line.frame);

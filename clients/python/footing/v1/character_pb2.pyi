@@ -178,7 +178,8 @@ class BodyFoot(_message.Message):
     def __init__(self, contact: bool = ..., valid: bool = ..., position_m: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., variance_m2: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., load_n: _Optional[float] = ..., cop_valid: bool = ..., cop_m: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., airborne_s: _Optional[float] = ...) -> None: ...
 
 class BodyState(_message.Message):
-    __slots__ = ["angular_momentum_kgm2ps", "angular_momentum_variance", "calibrated", "calibration_progress", "calibration_restarts", "com_acceleration_mps2", "com_variance_m2", "contact_source", "feet", "feet_told", "hands_seen", "hands_source", "height_m", "lag_s", "left_out", "link_sd_m", "mass_kg", "mode", "momentum_valid", "note", "resets", "solve_us", "subject"]
+    __slots__ = ["angle_sd_rad", "angular_momentum_kgm2ps", "angular_momentum_variance", "calibrated", "calibration_progress", "calibration_restarts", "com_acceleration_mps2", "com_variance_m2", "contact_source", "feet", "feet_told", "hands_seen", "hands_source", "height_m", "lag_s", "left_out", "link_sd_m", "mass_kg", "mode", "momentum_valid", "note", "resets", "solve_us", "subject"]
+    ANGLE_SD_RAD_FIELD_NUMBER: _ClassVar[int]
     ANGULAR_MOMENTUM_KGM2PS_FIELD_NUMBER: _ClassVar[int]
     ANGULAR_MOMENTUM_VARIANCE_FIELD_NUMBER: _ClassVar[int]
     CALIBRATED_FIELD_NUMBER: _ClassVar[int]
@@ -202,6 +203,7 @@ class BodyState(_message.Message):
     RESETS_FIELD_NUMBER: _ClassVar[int]
     SOLVE_US_FIELD_NUMBER: _ClassVar[int]
     SUBJECT_FIELD_NUMBER: _ClassVar[int]
+    angle_sd_rad: _containers.RepeatedScalarFieldContainer[float]
     angular_momentum_kgm2ps: _sensor_pb2.Vector3
     angular_momentum_variance: _sensor_pb2.Vector3
     calibrated: bool
@@ -225,7 +227,7 @@ class BodyState(_message.Message):
     resets: int
     solve_us: float
     subject: str
-    def __init__(self, subject: _Optional[str] = ..., mode: _Optional[str] = ..., calibrated: bool = ..., calibration_progress: _Optional[float] = ..., calibration_restarts: _Optional[int] = ..., mass_kg: _Optional[float] = ..., height_m: _Optional[float] = ..., lag_s: _Optional[float] = ..., momentum_valid: bool = ..., com_variance_m2: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., com_acceleration_mps2: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., angular_momentum_kgm2ps: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., angular_momentum_variance: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., feet: _Optional[_Iterable[_Union[BodyFoot, _Mapping]]] = ..., resets: _Optional[int] = ..., link_sd_m: _Optional[_Iterable[float]] = ..., note: _Optional[str] = ..., solve_us: _Optional[float] = ..., hands_seen: _Optional[_Iterable[bool]] = ..., contact_source: _Optional[str] = ..., feet_told: _Optional[_Iterable[bool]] = ..., hands_source: _Optional[str] = ..., left_out: _Optional[_Iterable[str]] = ...) -> None: ...
+    def __init__(self, subject: _Optional[str] = ..., mode: _Optional[str] = ..., calibrated: bool = ..., calibration_progress: _Optional[float] = ..., calibration_restarts: _Optional[int] = ..., mass_kg: _Optional[float] = ..., height_m: _Optional[float] = ..., lag_s: _Optional[float] = ..., momentum_valid: bool = ..., com_variance_m2: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., com_acceleration_mps2: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., angular_momentum_kgm2ps: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., angular_momentum_variance: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., feet: _Optional[_Iterable[_Union[BodyFoot, _Mapping]]] = ..., resets: _Optional[int] = ..., link_sd_m: _Optional[_Iterable[float]] = ..., note: _Optional[str] = ..., solve_us: _Optional[float] = ..., hands_seen: _Optional[_Iterable[bool]] = ..., contact_source: _Optional[str] = ..., feet_told: _Optional[_Iterable[bool]] = ..., hands_source: _Optional[str] = ..., left_out: _Optional[_Iterable[str]] = ..., angle_sd_rad: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class Character(_message.Message):
     __slots__ = ["body", "character", "com_m", "com_velocity_mps", "contacts", "gait", "interface", "links", "rig", "simulated_input", "trial", "valid"]
@@ -584,7 +586,7 @@ class PoseHand(_message.Message):
     def __init__(self, valid: bool = ..., position_m: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., sd_m: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., arm: _Optional[_Union[PoseArm, _Mapping]] = ..., covariance_m2: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., of_skeleton: bool = ...) -> None: ...
 
 class PoseInput(_message.Message):
-    __slots__ = ["calibrate_number", "hands_of_skeleton", "joints", "left_foot", "left_hand", "left_out", "mode", "right_foot", "right_hand", "same_person", "subject_code", "subject_foot_length_m", "subject_height_m", "subject_mass_kg", "subject_number"]
+    __slots__ = ["calibrate_number", "hands_of_skeleton", "joints", "left_foot", "left_hand", "left_out", "mode", "right_foot", "right_hand", "same_person", "subject_code", "subject_foot_length_m", "subject_height_m", "subject_mass_kg", "subject_number", "turns"]
     CALIBRATE_NUMBER_FIELD_NUMBER: _ClassVar[int]
     HANDS_OF_SKELETON_FIELD_NUMBER: _ClassVar[int]
     JOINTS_FIELD_NUMBER: _ClassVar[int]
@@ -600,6 +602,7 @@ class PoseInput(_message.Message):
     SUBJECT_HEIGHT_M_FIELD_NUMBER: _ClassVar[int]
     SUBJECT_MASS_KG_FIELD_NUMBER: _ClassVar[int]
     SUBJECT_NUMBER_FIELD_NUMBER: _ClassVar[int]
+    TURNS_FIELD_NUMBER: _ClassVar[int]
     calibrate_number: int
     hands_of_skeleton: bool
     joints: _containers.RepeatedCompositeFieldContainer[PoseJoint]
@@ -615,7 +618,8 @@ class PoseInput(_message.Message):
     subject_height_m: float
     subject_mass_kg: float
     subject_number: int
-    def __init__(self, left_foot: _Optional[_Union[PoseFoot, _Mapping]] = ..., right_foot: _Optional[_Union[PoseFoot, _Mapping]] = ..., left_hand: _Optional[_Union[PoseHand, _Mapping]] = ..., right_hand: _Optional[_Union[PoseHand, _Mapping]] = ..., calibrate_number: _Optional[int] = ..., subject_number: _Optional[int] = ..., subject_code: _Optional[str] = ..., subject_height_m: _Optional[float] = ..., subject_mass_kg: _Optional[float] = ..., subject_foot_length_m: _Optional[float] = ..., joints: _Optional[_Iterable[_Union[PoseJoint, _Mapping]]] = ..., hands_of_skeleton: bool = ..., mode: _Optional[str] = ..., left_out: _Optional[_Iterable[str]] = ..., same_person: bool = ...) -> None: ...
+    turns: _containers.RepeatedCompositeFieldContainer[PoseTurn]
+    def __init__(self, left_foot: _Optional[_Union[PoseFoot, _Mapping]] = ..., right_foot: _Optional[_Union[PoseFoot, _Mapping]] = ..., left_hand: _Optional[_Union[PoseHand, _Mapping]] = ..., right_hand: _Optional[_Union[PoseHand, _Mapping]] = ..., calibrate_number: _Optional[int] = ..., subject_number: _Optional[int] = ..., subject_code: _Optional[str] = ..., subject_height_m: _Optional[float] = ..., subject_mass_kg: _Optional[float] = ..., subject_foot_length_m: _Optional[float] = ..., joints: _Optional[_Iterable[_Union[PoseJoint, _Mapping]]] = ..., hands_of_skeleton: bool = ..., mode: _Optional[str] = ..., left_out: _Optional[_Iterable[str]] = ..., same_person: bool = ..., turns: _Optional[_Iterable[_Union[PoseTurn, _Mapping]]] = ...) -> None: ...
 
 class PoseJoint(_message.Message):
     __slots__ = ["covariance_m2", "joint", "position_m", "sd_m"]
@@ -628,6 +632,22 @@ class PoseJoint(_message.Message):
     position_m: _sensor_pb2.Vector3
     sd_m: _sensor_pb2.Vector3
     def __init__(self, joint: _Optional[_Union[_device_pb2.BodyJoint, str]] = ..., position_m: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., sd_m: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., covariance_m2: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ...) -> None: ...
+
+class PoseTurn(_message.Message):
+    __slots__ = ["heading_sd_rad", "inclination_sd_rad", "segment", "x", "y", "z"]
+    HEADING_SD_RAD_FIELD_NUMBER: _ClassVar[int]
+    INCLINATION_SD_RAD_FIELD_NUMBER: _ClassVar[int]
+    SEGMENT_FIELD_NUMBER: _ClassVar[int]
+    X_FIELD_NUMBER: _ClassVar[int]
+    Y_FIELD_NUMBER: _ClassVar[int]
+    Z_FIELD_NUMBER: _ClassVar[int]
+    heading_sd_rad: float
+    inclination_sd_rad: float
+    segment: str
+    x: _sensor_pb2.Vector3
+    y: _sensor_pb2.Vector3
+    z: _sensor_pb2.Vector3
+    def __init__(self, segment: _Optional[str] = ..., x: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., y: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., z: _Optional[_Union[_sensor_pb2.Vector3, _Mapping]] = ..., heading_sd_rad: _Optional[float] = ..., inclination_sd_rad: _Optional[float] = ...) -> None: ...
 
 class ResponseStages(_message.Message):
     __slots__ = ["command_ns", "contact_ns", "decoded_ns", "features_computed_ns", "features_received_ns", "first_frame_ns", "report_received_ns", "to"]
