@@ -12,6 +12,7 @@
 #include "clients/log/biped_person.h"
 #include "clients/log/contents.h"
 #include "common/base/text.h"
+#include "common/base/units.h"
 #include "common/body/angle_deviation.h"
 #include "common/body/skeleton.h"
 #include "common/recording/mcap_reader.h"
@@ -51,8 +52,17 @@ std::string ErrorsCsv() {
 /// A frame that is not valid says nothing about an angle: that of any direction, 360 / sqrt(12).
 constexpr double kUnknownDeg = 103.923;
 
-/// The stated standard deviations of the columns of `angles` that are angles, at the same times.
-motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool>& valid) {
+/// The angle's place in the rows that the engine states; nothing where it states none.
+std::optional<std::size_t> StatedAngle(const std::string& column) {
+  const auto found = std::find(body::kStatedAngles.begin(), body::kStatedAngles.end(), column);
+  if (found == body::kStatedAngles.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - body::kStatedAngles.begin());
+}
+
+/// The standard deviations of the columns of `angles` that are angles, at the same times: in each
+/// frame those that the engine states, otherwise those that were measured.
+motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool>& valid,
+                             const std::vector<std::vector<double>>& stated_deg) {
   motion::Table table;
   table.in_degrees = true;
   std::vector<Eigen::Index> columns;
@@ -71,11 +81,17 @@ motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool
     const bool bent =
         (angles.values(row, left) + angles.values(row, right)) / 2 >= body::kBentKneeDeg;
     table.values(row, 0) = angles.values(row, 0);
+    const std::vector<double>& stated = stated_deg[static_cast<std::size_t>(row)];
     for (std::size_t i = 1; i < columns.size(); ++i) {
-      table.values(row, static_cast<Eigen::Index>(i)) = !valid[static_cast<std::size_t>(row)]
-                                                            ? kUnknownDeg
-                                                        : bent ? deviations[i].bent_deg
-                                                               : deviations[i].upright_deg;
+      double& sd_deg = table.values(row, static_cast<Eigen::Index>(i));
+      const auto angle = StatedAngle(table.columns[i]);
+      if (!valid[static_cast<std::size_t>(row)]) {
+        sd_deg = kUnknownDeg;
+      } else if (angle && *angle < stated.size()) {
+        sd_deg = stated[*angle];
+      } else {
+        sd_deg = bent ? deviations[i].bent_deg : deviations[i].upright_deg;
+      }
     }
   }
   return table;
@@ -94,15 +110,23 @@ Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
     return std::vector<NamedText>{{angles->name, motion::WriteTable(*angles)},
                                   {table.name, motion::WriteTable(table)}};
   }
-  motion::Table deviations = DeviationTable(*angles, valid);
+  const auto stated_deg = gatherer.AngleDeviations();
+  if (!stated_deg) return stated_deg.error();
+  motion::Table deviations = DeviationTable(*angles, valid, *stated_deg);
   deviations.name = name + "_sd.sto";
   const std::string source(body::AngleDeviationSource());
   std::vector<NamedText> texts{
       {angles->name,
-       motion::WithNote(motion::WriteTable(*angles),
-                        "Angles are estimates: " + deviations.name + " has their " + source)},
+       motion::WithNote(motion::WriteTable(*angles), "Angles are estimates: " + deviations.name +
+                                                         " has their standard "
+                                                         "deviations, frame by frame")},
       {table.name, motion::WriteTable(table)},
-      {deviations.name, motion::WithNote(motion::WriteTable(deviations), source), true},
+      {deviations.name,
+       motion::WithNote(motion::WriteTable(deviations),
+                        "pelvis, trunk and legs: as the engine states them in each frame, by the "
+                        "sensors that are worn; others: " +
+                            source),
+       true},
       {name + "_loads.xml", motion::ExternalLoads(name), true}};
   const auto csv = motion::AnglesCsv(*angles, valid);
   if (!csv) return csv.error();
@@ -472,6 +496,18 @@ Result<std::vector<bool>> MotionGatherer::Valid() const {
     valid.push_back(frames_[frame].characters(0).valid());
   }
   return valid;
+}
+
+Result<std::vector<std::vector<double>>> MotionGatherer::AngleDeviations() const {
+  const auto grid = MakeGrid();
+  if (!grid) return grid.error();
+  std::vector<std::vector<double>> rows;
+  for (const std::size_t frame : grid->frames) {
+    const auto& stated_rad = frames_[frame].characters(0).body().angle_sd_rad();
+    rows.emplace_back();
+    for (const double sd_rad : stated_rad) rows.back().push_back(RadiansToDegrees(sd_rad));
+  }
+  return rows;
 }
 
 }  // namespace footing::log_client

@@ -89,6 +89,10 @@ class MotionGatherer {
   Result<std::vector<motion::FootForces>> Forces() const;
   /// Whether the engine reported each pose of Finish() as valid.
   Result<std::vector<bool>> Valid() const;
+  /// The standard deviations that the engine states of the angles of each pose of Finish(),
+  /// degrees, by body::kStatedAngles; empty rows in paper mode, and in recordings before they were
+  /// stated.
+  Result<std::vector<std::vector<double>>> AngleDeviations() const;
   bool empty() const { return frames_.empty(); }
   const std::string& subject() const { return subject_; }
   bool is_biped() const { return is_biped_; }

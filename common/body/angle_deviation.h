@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,5 +36,13 @@ std::span<const AngleDeviation> LinkDeviations();
 /// on. Empty where this is not the skeleton of a person.
 std::vector<AngleDeviation> DeviationsOfLinks(std::span<const std::string> names,
                                               std::span<const int> parents);
+
+/// The angles of pelvis, trunk and legs whose standard deviation the pose engine states in each
+/// frame, in this order: names of joint_angles::JointAngles.
+inline constexpr std::array<std::string_view, 16> kStatedAngles = {
+    "pelvis_tilt",     "pelvis_list",      "pelvis_rotation", "hip_flexion_r",
+    "hip_adduction_r", "hip_rotation_r",   "knee_angle_r",    "ankle_angle_r",
+    "hip_flexion_l",   "hip_adduction_l",  "hip_rotation_l",  "knee_angle_l",
+    "ankle_angle_l",   "lumbar_extension", "lumbar_bending",  "lumbar_rotation"};
 
 }  // namespace footing::body

@@ -32,8 +32,21 @@ class Errors {
     if (kind.valid) valid_.Add(error_deg);
     (kind.bent ? bent_ : upright_).Add(error_deg);
   }
+  /// With its stated deviation.
+  void AddStated(double error_deg, double sd_deg, FrameKind kind) {
+    sd_.Add(sd_deg);
+    const double off = error_deg / sd_deg;
+    off_.Add(off);
+    (kind.bent ? off_bent_ : off_upright_).Add(off);
+  }
   void WriteTo(ordered_json& json) const {
     json["rmse_deg"] = all_.Rms();
+    if (sd_.count > 0) {
+      json["sd_deg"] = sd_.Rms();
+      json["nees"] = off_.MeanSquare();
+      if (off_bent_.count > 0) json["nees_bent"] = off_bent_.MeanSquare();
+      if (off_upright_.count > 0) json["nees_upright"] = off_upright_.MeanSquare();
+    }
     if (valid_.count > 0) json["rmse_valid_deg"] = valid_.Rms();
     if (upright_.count > 0) json["rmse_upright_deg"] = upright_.Rms();
     if (bent_.count > 0) json["rmse_bent_deg"] = bent_.Rms();
@@ -49,9 +62,11 @@ class Errors {
       sum += value;
       squares += value * value;
     }
-    double Rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
+    double MeanSquare() const { return count > 0 ? squares / count : 0; }
+    double Rms() const { return std::sqrt(MeanSquare()); }
   };
   Sum all_, valid_, upright_, bent_;
+  Sum sd_, off_, off_bent_, off_upright_;  ///< Off: error over stated deviation.
 };
 
 struct Range {
@@ -121,7 +136,7 @@ std::optional<std::string> NameOfTrunkOrLeg(const std::string& column) {
 /// and legs alone, in the frames in which they are known.
 void WriteCoordinates(const motion::Table& estimated, const motion::Table& truth,
                       const std::vector<FrameKind>& kinds, bool since_standing,
-                      ordered_json& json) {
+                      const std::vector<reconstruction::AngleSd>& stated, ordered_json& json) {
   std::map<std::string, Coordinate> coordinates;
   std::vector<std::string> order;
   for (std::size_t column = 0; column < estimated.columns.size(); ++column) {
@@ -132,13 +147,20 @@ void WriteCoordinates(const motion::Table& estimated, const motion::Table& truth
     Coordinate& coordinate = coordinates[*name];
     const auto index = static_cast<Eigen::Index>(column);
     const int true_index = motion::FindColumn(truth, label);
+    const auto angle = static_cast<std::size_t>(
+        std::find(body::kStatedAngles.begin(), body::kStatedAngles.end(), label) -
+        body::kStatedAngles.begin());
     for (Eigen::Index row = 0; row < estimated.values.rows(); ++row) {
       ++coordinate.frames;
       if (since_standing && !joint_angles::IsKnown(estimated, label, row)) continue;
       const double is_deg = estimated.values(row, index);
       const double should_deg = truth.values(row, true_index);
-      coordinate.errors.Add(std::remainder(is_deg - should_deg, 360.0),
-                            kinds[static_cast<std::size_t>(row)]);
+      const double error_deg = std::remainder(is_deg - should_deg, 360.0);
+      const auto at = static_cast<std::size_t>(row);
+      coordinate.errors.Add(error_deg, kinds[at]);
+      if (at < stated.size() && angle < body::kStatedAngles.size()) {
+        coordinate.errors.AddStated(error_deg, RadiansToDegrees(stated[at][angle]), kinds[at]);
+      }
       coordinate.estimated.Add(is_deg);
       coordinate.truth.Add(should_deg);
     }
@@ -163,22 +185,25 @@ double RotationDeg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 }  // namespace
 
 Result<ordered_json> CompareAngles(const motion::Table& estimated, const motion::Table& truth,
-                                   const std::vector<bool>& valid, Eigen::Index first) {
+                                   const std::vector<bool>& valid, Eigen::Index first,
+                                   const std::vector<reconstruction::AngleSd>& stated) {
   ordered_json json;
   const std::vector<FrameKind> kinds = KindsOf(estimated, valid);
-  WriteCoordinates(estimated, truth, kinds, false, json["joint_angles"]);
+  WriteCoordinates(estimated, truth, kinds, false, {}, json["joint_angles"]);
   const auto standing = joint_angles::FindStanding(truth, first);
   if (standing.empty()) return json;
   const auto change = joint_angles::SinceStanding(estimated, standing);
   if (!change) return change.error();
   const auto true_change = joint_angles::SinceStanding(truth, standing);
   if (!true_change) return true_change.error();
-  WriteCoordinates(*change, *true_change, kinds, true, json["angles_since_standing"]);
+  WriteCoordinates(*change, *true_change, kinds, true, stated, json["angles_since_standing"]);
   return json;
 }
 
-void AngleScore::Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q, bool valid) {
-  q_.push_back(q);
+void AngleScore::Add(const reconstruction::Output& output, const Eigen::VectorXd& true_q,
+                     bool valid) {
+  q_.push_back(output.q);
+  stated_.push_back(output.angle_sd_rad);
   true_q_.push_back(true_q);
   valid_.push_back(valid);
 }
@@ -190,7 +215,7 @@ Result<void> AngleScore::WriteTo(ordered_json& json) const {
   if (!estimated) return estimated.error();
   const auto truth = joint_angles::JointAngles(MotionOf(body_, true_q_, rate_hz_), &estimate);
   if (!truth) return truth.error();
-  const auto compared = CompareAngles(*estimated, *truth, valid_, first_);
+  const auto compared = CompareAngles(*estimated, *truth, valid_, first_, stated_);
   if (!compared) return compared.error();
   json.update(*compared);
   const std::vector<FrameKind> kinds = KindsOf(*estimated, valid_);

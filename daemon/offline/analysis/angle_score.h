@@ -17,15 +17,17 @@
 #include "common/body/landmarks.h"
 #include "common/virtual/motion/table.h"
 #include "daemon/simulation/momentum/contact_loads.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::eval {
 
 /// Two tables of joint angles, row by row: {joint_angles: {NAME: {...}}, angles_since_standing:
 /// {...}} as AngleScore has them, of the coordinates that are in both. `valid`: one for each row.
-/// The frames in which the person stands are looked for in `truth`, from row `first` on.
-Result<nlohmann::ordered_json> CompareAngles(const motion::Table& estimated,
-                                             const motion::Table& truth,
-                                             const std::vector<bool>& valid, Eigen::Index first);
+/// The frames in which the person stands are looked for in `truth`, from row `first` on. `stated`:
+/// the stated deviations of each row, by body::kStatedAngles; empty: none are.
+Result<nlohmann::ordered_json> CompareAngles(
+    const motion::Table& estimated, const motion::Table& truth, const std::vector<bool>& valid,
+    Eigen::Index first, const std::vector<reconstruction::AngleSd>& stated = {});
 
 /// Joint angles and orientations of links against the truth, as the exports have them.
 class AngleScore {
@@ -35,7 +37,7 @@ class AngleScore {
   AngleScore(const body::Body& body, double rate_hz, Eigen::Index first)
       : body_(body), rate_hz_(rate_hz), first_(first) {}
 
-  void Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q, bool valid);
+  void Add(const reconstruction::Output& output, const Eigen::VectorXd& true_q, bool valid);
 
   /// The field joint_angles has an entry for each coordinate (joint_angles::JointAngles; both sides
   /// of a limb together) with RMS error, mean error, and the range of the true and the estimated
@@ -47,7 +49,9 @@ class AngleScore {
   /// The field angles_since_standing has the same of pelvis, trunk and legs as the change from the
   /// person's own standing (joint_angles::SinceStanding), of estimate and truth each from the
   /// frames in which the true person stands; absent where it never does. The rotation of a hip is
-  /// that of the frames in which it is known (joint_angles::IsKnown), known_share of all.
+  /// that of the frames in which it is known (joint_angles::IsKnown), known_share of all. It has
+  /// the stated deviation besides, sd_deg (rms), and nees, the mean of the squared error over the
+  /// stated variance, of all frames, nees_bent and nees_upright.
   Result<void> WriteTo(nlohmann::ordered_json& json) const;
 
   /// A frame is bent when the mean flexion of both knees exceeds this, degrees.
@@ -59,6 +63,7 @@ class AngleScore {
   Eigen::Index first_;
   std::vector<Eigen::VectorXd> q_, true_q_;
   std::vector<bool> valid_;
+  std::vector<reconstruction::AngleSd> stated_;
 };
 
 /// How far a value is from going on as it went: the root mean square of its second difference from

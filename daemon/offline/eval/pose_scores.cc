@@ -375,6 +375,8 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
       {"spread", &c.spread},
       {"arm_joint_spread", &c.arm_joint_spread},
       {"com_spread", &c.com_spread},
+      {"angle_weight", &c.angle_weight},
+      {"bent_angle_weight", &c.bent_angle_weight},
       {"com_sd_m", &c.com_sd_m},
       {"angular_sd", &c.angular_sd},
       {"prior_weight", &c.prior_weight},

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "common/base/units.h"
 #include "common/body/landmarks.h"
@@ -72,6 +74,16 @@ std::size_t ClipBegins(const pose_run::PoseRun& run) {
   return std::max(begin, run.judged_from);
 }
 
+/// Squared errors over their stated variances.
+struct Nees {
+  double sum = 0, count = 0;
+  void Add(double value) {
+    sum += value;
+    ++count;
+  }
+  double Mean() const { return count > 0 ? sum / count : 0; }
+};
+
 /// All outputs of a trial against the truth.
 class TrialScore {
  public:
@@ -82,20 +94,27 @@ class TrialScore {
         angles_(run.body, run.rate_hz,
                 static_cast<Eigen::Index>(ClipBegins(run) - run.judged_from + lag)),
         feet_(run, lag),
-        breakdown_(run) {}
+        breakdown_(run) {
+    const JudgedJoints judged(run.body);
+    groups_ = {
+        {"legs", {judged.legs, {}}}, {"torso", {judged.torso, {}}}, {"arms", {judged.arms, {}}}};
+  }
 
   /// The output that came with frame `i`.
   void Add(const reconstruction::Output& output, std::size_t i) {
     const pose_run::Frame& truth = run_.frames[i - lag_];
     pose_.Add(output.q, truth.q);
-    angles_.Add(output.q, truth.q, output.valid);
+    angles_.Add(output, truth.q, output.valid);
     com_.Add(run_.body, output, pose_, truth);
     feet_.Add(output, pose_, i);
     smoothness_.Add(run_.body.landmarks, output, pose_, truth);
     breakdown_.Add(output, pose_, i - lag_);
-    for (std::size_t k = 0; k < output.joint_sd_m.size(); ++k) {
-      nees_ += pose_.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
-      ++nees_count_;
+    const auto off = [&](std::size_t k) {
+      return pose_.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
+    };
+    for (std::size_t k = 0; k < output.joint_sd_m.size(); ++k) nees_.Add(off(k));
+    for (auto& [name, group] : groups_) {
+      for (const int joint : group.joints) group.nees.Add(off(static_cast<std::size_t>(joint)));
     }
     AddValidity(output);
     misfit_.Add(output.misfit);
@@ -108,7 +127,8 @@ class TrialScore {
     com_.WriteTo(json);
     smoothness_.WriteTo(json);
     feet_.WriteTo(json);
-    json["nees"] = nees_count_ > 0 ? nees_ / nees_count_ : 0;
+    json["nees"] = nees_.Mean();
+    for (const auto& [name, group] : groups_) json["nees_of"][name] = group.nees.Mean();
     json.update(breakdown_.Json());
     json["misfit_p50"] = misfit_.Quantile(0.5);
     json["misfit_p95"] = misfit_.Quantile(0.95);
@@ -146,7 +166,12 @@ class TrialScore {
   SmoothnessScore smoothness_;
   FootScore feet_;
   PoseBreakdown breakdown_;
-  double nees_ = 0, nees_count_ = 0;  ///< NEES of joint positions, summed, and its count.
+  Nees nees_;  ///< Of the positions of all joints.
+  struct Group {
+    std::vector<int> joints;
+    Nees nees;
+  };
+  std::map<std::string, Group> groups_;
   Spread misfit_;
   std::size_t frames_ = 0, invalid_ = 0;
   std::size_t invalid_since_ = 0, longest_invalid_ = 0;  ///< Frames in a row.

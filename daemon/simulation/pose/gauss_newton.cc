@@ -267,6 +267,10 @@ Eigen::Vector3d GaussNewton::ComSd() {
   return update_.OpenVariances(terms_.ComBlock()).cwiseSqrt();
 }
 
+Eigen::Vector3d GaussNewton::TurnVariances(int joint, int above, const Eigen::Matrix3d& to_angles) {
+  return update_.OpenVariances(terms_.TurnBlock(joint, above, to_angles));
+}
+
 void GaussNewton::ContinueFrom(const Eigen::VectorXd& q) {
   offset_q_ = q - basis_->mean;
   whitened_.noalias() = basis_->inverse * offset_q_;

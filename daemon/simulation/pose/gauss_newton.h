@@ -130,6 +130,11 @@ class GaussNewton {
   double JointSd(int joint);
   /// The same of the COM, along each axis, m.
   Eigen::Vector3d ComSd();
+  /// The same of the turn of a joint's frame against that of `above`, one of its ancestors (-1: W):
+  /// variances, rad^2, of the rows of `to_angles` times the angular velocity in W.
+  Eigen::Vector3d TurnVariances(int joint, int above, const Eigen::Matrix3d& to_angles);
+  /// From now on until the next frame, deviations are those with this weight of the prior.
+  void Weigh(double prior_weight) { update_.Factorise(prior_weight); }
 
  private:
   void Start(const Eigen::VectorXd& likely_q);

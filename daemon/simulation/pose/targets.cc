@@ -176,6 +176,20 @@ const JacobianBlock& MeasuredTerms::ComBlock() {
   return single_;
 }
 
+const JacobianBlock& MeasuredTerms::TurnBlock(int joint, int above,
+                                              const Eigen::Matrix3d& to_angles) {
+  single_.dofs = &moved_by_[static_cast<std::size_t>(joint)];
+  for (const int dof : *single_.dofs) single_.by_q.col(dof).setZero();
+  for (int i = joint; i >= 0 && i != above; i = body_->skeleton.joint(i).parent) {
+    const body::Joint& link = body_->skeleton.joint(i);
+    const int end = link.first_dof + static_cast<int>(link.rotations.size());
+    for (int dof = link.first_dof; dof < end; ++dof) {
+      single_.by_q.col(dof) = to_angles * at_.axis_W[static_cast<std::size_t>(dof)];
+    }
+  }
+  return single_;
+}
+
 namespace {
 
 constexpr double kDamping = 1e-3;  // m per rad, squared: of the order of (3 cm)^2.

@@ -234,6 +234,7 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
     frame.links.pose[i].orientation = Eigen::Quaterniond(output.R_WJ[i]);
     frame.links.sd_m[i] = i < output.joint_sd_m.size() ? output.joint_sd_m[i] : 0;
   }
+  frame.links.angle_sd_rad = output.angle_sd_rad;
   frame.solve_us = static_cast<double>(solve_ns_) * 1e-3;
 }
 

@@ -116,6 +116,9 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const reconstructio
   for (const auto& foot : frame.momentum.feet) SetFoot(foot, *body.add_feet());
   body.set_resets(frame.resets);
   for (std::size_t i = 0; i < frame.links.count; ++i) body.add_link_sd_m(frame.links.sd_m[i]);
+  if (options.mode == reconstruction::Mode::kBest) {
+    for (const double sd_rad : frame.links.angle_sd_rad) body.add_angle_sd_rad(sd_rad);
+  }
   body.set_note(PoseNote(frame, subject));
   body.set_solve_us(frame.solve_us);
   for (std::size_t side = 0; side < reconstruction::kHands; ++side) {

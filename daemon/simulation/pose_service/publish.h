@@ -87,6 +87,7 @@ struct PoseLinks {
   std::size_t count = 0;
   std::array<stream::LinkPose, kMaxLinks> pose;
   std::array<double, kMaxLinks> sd_m{};
+  reconstruction::AngleSd angle_sd_rad = reconstruction::UnknownAngles();
 };
 
 /// Frame that the simulation thread hands over at every frame of the pose engine. Fixed size:

@@ -50,6 +50,39 @@ std::array<arms::ArmEstimate, kHands> UsableArms(
   return usable;
 }
 
+/// How each leg leans in the T-pose beyond the straight one of the model, W. People stand as wide
+/// as they like, and their feet tell how wide. Their COM is over their COP, ahead of the ankles, so
+/// the legs lean forwards from there.
+Stance StanceOf(const SubjectModel& model,
+                                                      const momentum::TPose& pose,
+                                                      const Eigen::Vector3d& origin_m) {
+  const auto place = [&](int joint) -> const Eigen::Vector3d& {
+    return model.t_pose_at.p_WJ[static_cast<std::size_t>(joint)];
+  };
+  std::array<Eigen::Vector3d, momentum::kFeet> straight_m, stands_m;
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    const FootGeometry& foot = model.feet[f];
+    straight_m[f] = place(foot.ankle.joint);
+    stands_m[f] = pose.p_WP_m[f] + foot.R_WF * foot.ankle_F_m;
+  }
+  const Eigen::Vector3d com_m =
+      body::CentreOfMass(model.body, model.t_pose_at) - 0.5 * (straight_m[0] + straight_m[1]);
+  const double ahead_m = (pose.cop_m - 0.5 * (stands_m[0] + stands_m[1])).x();
+  const double forward_rad = std::atan2(ahead_m - com_m.x(), com_m.z());
+  Stance stance;
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    const auto hip_landmark = body::OfSide(body::Landmark::kLeftHip, static_cast<int>(f));
+    const Eigen::Vector3d hip_m = place(model.body.landmarks[hip_landmark]);
+    const double down_m = hip_m.z() - straight_m[f].z();
+    const double aside_rad = std::atan2((stands_m[f] - origin_m - hip_m).y(), down_m) -
+                             std::atan2((straight_m[f] - hip_m).y(), down_m);
+    stance[f] = (Eigen::AngleAxisd(forward_rad, Eigen::Vector3d::UnitY()) *
+                 Eigen::AngleAxisd(aside_rad, Eigen::Vector3d::UnitX()))
+                    .toRotationMatrix();
+  }
+  return stance;
+}
+
 BodyTurns UsableTurns(const BodyTurns& turns) {
   constexpr double kRounding = 1e-3;
   BodyTurns usable = turns;
@@ -60,6 +93,17 @@ BodyTurns UsableTurns(const BodyTurns& turns) {
                 one.heading_sd_rad >= 0 && one.inclination_sd_rad >= 0;
   }
   return usable;
+}
+
+BodyTurns FromStance(BodyTurns turns, const Stance& stance) {
+  for (const auto& [site, foot] : {std::pair{BodySite::kLeftThigh, 0},
+                                   {BodySite::kRightThigh, 1},
+                                   {BodySite::kLeftShank, 0},
+                                   {BodySite::kRightShank, 1}}) {
+    Eigen::Matrix3d& turn_W = turns[static_cast<std::size_t>(site)].turn_W;
+    turn_W = turn_W * stance[static_cast<std::size_t>(foot)];
+  }
+  return turns;
 }
 
 void ReportTPose(const SubjectModel& model, const Options& options, Output& output) {
@@ -109,6 +153,7 @@ void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& ori
   plain_.Reset();
   if (learned_) learned_->Reset();
   origin_m_ = origin_m;
+  stance_ = StanceOf(*model_, pose, origin_m);
 }
 
 Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& points) {
@@ -117,7 +162,7 @@ Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& point
                   .arms = UsableArms(inputs.arms),
                   .momentum = {},
                   .joints = UsableJoints(inputs.joints, origin_m_),
-                  .turns = UsableTurns(inputs.turns)};
+                  .turns = FromStance(UsableTurns(inputs.turns), stance_)};
   std::optional<momentum::PostureCom> posture;
   if (options_.use_posture && now.both_hands()) posture = FindPosture(contacts.feet, points, now);
   now.momentum = estimator_->Advance(contacts, posture);
@@ -190,6 +235,7 @@ void SolutionReport::Start() {
   misfit_.Start();
   resets_ = 0;
   spread_.Start();
+  angles_.Start();
 }
 
 void SolutionReport::Report(const ModeState& state, const Measurement& then,
@@ -202,6 +248,8 @@ void SolutionReport::Report(const ModeState& state, const Measurement& then,
   const double doubt = Doubt(output.misfit, then.momentum.trusted && !then.momentum.stepped);
   spread_.Advance(solver);
   spread_.Report(doubt, output);
+  angles_.Advance(best_, solver);
+  output.angle_sd_rad = angles_.Report(doubt, then.momentum, best_);
   ReportCom(then.momentum, output);
   if (state.targets.has_com) {
     ReportPoseHeight(*state.model, state.pose.at, spread_.com_height_sd_m(), doubt, output);

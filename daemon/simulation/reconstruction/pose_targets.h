@@ -44,6 +44,15 @@ JointInputs UsableJoints(const JointInputs& joints, const Eigen::Vector3d& origi
 std::array<arms::ArmEstimate, kHands> UsableArms(const std::array<arms::ArmEstimate, kHands>& arms);
 BodyTurns UsableTurns(const BodyTurns& turns);
 
+/// How each leg leans in the T-pose beyond the straight one of the model, W.
+using Stance = std::array<Eigen::Matrix3d, momentum::kFeet>;
+/// People stand as wide as they like, and their feet tell how wide. Their COM is over their COP,
+/// ahead of the ankles, so the legs lean forwards from there.
+Stance StanceOf(const SubjectModel& model, const momentum::TPose& pose,
+                const Eigen::Vector3d& origin_m);
+/// Turns of thighs and shanks, from the straight T-pose instead of the one that was taken.
+BodyTurns FromStance(BodyTurns turns, const Stance& stance);
+
 /// Before the first T-pose and after each request for a new one: stands in a T-pose, nothing valid.
 void ReportTPose(const SubjectModel& model, const Options& options, Output& output);
 /// One frame of the T-pose. True in the frame that completes it.
@@ -79,6 +88,7 @@ class BestEstimate {
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   std::optional<momentum::ContactEstimator> contacts_;  ///< From Start on, as the next.
   std::optional<momentum::BestEstimator> estimator_;
+  Stance stance_;
   pose::PoseTargets targets_;
   LikelyPosture likely_;
   pose::GaussNewton plain_;                   ///< About the mean of all poses.
@@ -129,7 +139,8 @@ struct ModeState {
 /// value.
 class SolutionReport {
  public:
-  SolutionReport(const SubjectModel& model, const BestConstants& best) : spread_(model, best) {}
+  SolutionReport(const SubjectModel& model, const BestConstants& best)
+      : best_(best), spread_(model, best), angles_(model) {}
 
   void Start();
   /// After MovePoseToWorld: the pose of the instant `then`, which `solver` solved with `prior`.
@@ -137,9 +148,11 @@ class SolutionReport {
               pose::GaussNewton& solver, Output& output);
 
  private:
+  BestConstants best_;
   MeanMisfit misfit_;
   std::uint32_t resets_ = 0;  ///< Resets of the filters, whose contradictions end with each.
   PoseSpread spread_;
+  AngleSpread angles_;
 };
 
 /// Insoles and hands: best mode's steps, with feet and COM where the model of a walk has them in

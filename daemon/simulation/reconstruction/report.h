@@ -13,6 +13,7 @@
 #include "daemon/simulation/momentum/estimate.h"
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/pose/targets.h"
+#include "daemon/simulation/reconstruction/angle_spread.h"
 #include "daemon/simulation/reconstruction/subject_model.h"
 
 namespace footing::reconstruction {
@@ -74,6 +75,8 @@ struct Output {
   std::vector<Eigen::Matrix3d> R_WJ;
   std::vector<Eigen::Vector3d> p_WJ_m;
   std::vector<double> joint_sd_m;  ///< Standard deviation of each joint's position, along one axis.
+  /// Of the angles of pelvis, trunk and legs; best mode and insoles.
+  AngleSd angle_sd_rad = UnknownAngles();
 };
 
 // The fifth step: the solver's pose has the feet where they are most likely; the legs, and these

@@ -155,8 +155,8 @@ struct BestConstants {
   double hand_sd_m = 0.008;  ///< Fist on the hand, beside what the input says.
   double arm_spread = 1.5;   ///< Factor on an arm's deviations: its errors persist for many frames.
   /// Standard deviation of a worn sensor on its bone, about each axis, beside what the attitude
-  /// says.
-  double segment_sd_rad = 0.07;
+  /// says: soft tissue and the way the segment was held in the T-pose, which last for many frames.
+  double segment_sd_rad = 0.1;
   /// Standard deviation of the pelvis's tilt between trunk and thighs that stay, beside what is
   /// learned: which tilt a skeleton has in a squat differs between laboratories (docs/pose.md).
   double pelvis_sd_rad = 0.2;
@@ -173,6 +173,11 @@ struct BestConstants {
   double spread = 1.4;
   double arm_joint_spread = 1.15;  ///< The same from the shoulders down: hands are measured.
   double com_spread = 1.75;        ///< The same for the height of the COM.
+  /// Weight of what is known of people in the deviations of angles: upright, and with knees bent by
+  /// kDeepBendRad or more, between them by the bend. Skeletons of laboratories and people's ways of
+  /// crouching differ most in deep bends, more than those who trained a model.
+  double angle_weight = 1.36;
+  double bent_angle_weight = 0.3;
   /// Standard deviation that the covariance of all frames leaves out of the knee and the joints
   /// below it while the foot is in the air: m along one axis, reached with this time constant.
   double aloft_sd_m = 0.14;

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "daemon/simulation/reconstruction/pose_targets.h"
 #include "tests/simulation/reconstruction/made_world.h"
@@ -114,6 +116,67 @@ TEST_F(BodyTurnTest, EachSegmentAsksForItsOwnJoint) {
       EXPECT_LT((R_WJ * target.p_J_m - target.p_W_m).norm(), 1e-12) << kBodySiteNames[site];
     }
     EXPECT_GT(targets.points[1].sd_m.y(), 5 * targets.points[0].sd_m.y()) << "the heading drifts";
+  }
+}
+
+TEST_F(BodyTurnTest, LegsLeanInTheTPoseAsFeetAndWeightStand) {
+  momentum::TPose straight;
+  std::array<Eigen::Vector3d, momentum::kFeet> ankle_m;
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    const FootGeometry& foot = model.feet[f];
+    ankle_m[f] = model.t_pose_at.p_WJ[static_cast<std::size_t>(foot.ankle.joint)];
+    straight.p_WP_m[f] = ankle_m[f] - foot.R_WF * foot.ankle_F_m;
+  }
+  const Eigen::Vector3d com_m = body::CentreOfMass(model.body, model.t_pose_at);
+  straight.cop_m = com_m;
+  const Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  for (const Eigen::Matrix3d& leg : StanceOf(model, straight, origin_m)) {
+    EXPECT_TRUE(leg.isIdentity(1e-9));
+  }
+  momentum::TPose wide = straight;
+  wide.p_WP_m[0].y() += 0.1;
+  wide.p_WP_m[1].y() -= 0.1;
+  const Stance spread = StanceOf(model, wide, origin_m);
+  const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR((spread[0] * down).y(), 0.12, 0.03) << "the left leg to the left";
+  EXPECT_NEAR((spread[1] * down).y(), -0.12, 0.03);
+  momentum::TPose ahead = straight;
+  ahead.cop_m.x() += 0.05;
+  const Eigen::Vector3d up = StanceOf(model, ahead, origin_m)[0] * Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR(up.x(), 0.05 / (com_m - ankle_m[0]).z(), 0.003) << "weight ahead: a lean forwards";
+  // Turned back by its lean, a leg that was spread in the T-pose hangs straight.
+  const Eigen::Matrix3d back = spread[0].transpose();
+  const BodyTurns turns = FromStance(TurnAt(BodySite::kLeftThigh, back), spread);
+  EXPECT_TRUE(turns[static_cast<std::size_t>(BodySite::kLeftThigh)].turn_W.isIdentity(1e-9));
+  const BodyTurns belt = FromStance(BeltAt(back), spread);
+  EXPECT_TRUE(belt[0].turn_W.isApprox(back)) << "the pelvis is upright";
+}
+
+TEST_F(BodyTurnTest, AnglesThatASensorShowsHaveSmallDeviations) {
+  Reconstruction bare = world.FreelyMade(), belt = bare, thighs = bare;
+  for (std::size_t i = 0; i < 560; ++i) {
+    Inputs inputs = world.inputs[i];
+    bare.Advance(inputs);
+    inputs.turns = BeltAt(Eigen::Matrix3d::Identity());
+    belt.Advance(inputs);
+    for (const BodySite site : {BodySite::kLeftThigh, BodySite::kRightThigh}) {
+      inputs.turns[static_cast<std::size_t>(site)] = inputs.turns[0];
+    }
+    thighs.Advance(inputs);
+  }
+  const auto sd_rad = [](const Reconstruction& of, std::string_view name) {
+    const auto found = std::find(body::kStatedAngles.begin(), body::kStatedAngles.end(), name);
+    return of.output().angle_sd_rad[static_cast<std::size_t>(found - body::kStatedAngles.begin())];
+  };
+  for (const double one_rad : bare.output().angle_sd_rad) {
+    EXPECT_GT(one_rad, 0);
+    EXPECT_LE(one_rad, kUnknownAngleRad);
+  }
+  EXPECT_LT(sd_rad(belt, "pelvis_tilt"), BestConstants{}.segment_sd_rad);
+  EXPECT_LT(sd_rad(belt, "pelvis_tilt"), sd_rad(bare, "pelvis_tilt"));
+  for (const char* name : {"hip_flexion_l", "hip_flexion_r"}) {
+    EXPECT_LT(sd_rad(thighs, name), 1.5 * BestConstants{}.segment_sd_rad) << name;
+    EXPECT_LT(sd_rad(thighs, name), sd_rad(belt, name)) << name;
   }
 }
 
