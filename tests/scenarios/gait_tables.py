@@ -2,8 +2,8 @@
 
 Usage: gait_tables.py BINARY_FOLDER [GAIT...]
 
-Some twenty minutes of one free processor, six of them for running. A mathematical library that rounds otherwise finds other
-tables.
+Some thirty minutes of one free processor, six of them for running and eight for the style. A mathematical library that
+rounds otherwise finds other tables.
 """
 import os
 import pathlib
@@ -14,7 +14,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLES = ROOT / "daemon/simulation/data/gaits"
 COMMAND_LINE = 1
-GAITS = ("step", "walk", "jump", "run", "paper/step", "paper/walk", "paper/jump", "paper/run")
+GAITS = ("step", "walk", "jump", "run", "style/walk", "paper/step", "paper/walk", "paper/jump", "paper/run")
 
 
 def written(binaries, gait):

@@ -203,4 +203,19 @@ double OrendurffBob(double speed_mps) {
   return kSlowM + (kFastM - kSlowM) * (speed_mps - kSlowMps) / (kFastMps - kSlowMps);
 }
 
+PelvisReference SaundersPelvis(double speed_mps) {
+  constexpr double kFreeMps = 1.2, kRollDeg = 5, kRollPhase = 0.4, kYawDeg = 4;
+  const auto step_m = [](double mps) {
+    const double cadence_hz = AlexanderCadence(mps, kHipHeightM);
+    return cadence_hz > 0 ? mps / cadence_hz : 0;
+  };
+  const double share = step_m(speed_mps) / step_m(kFreeMps);
+  return {{share * DegreesToRadians(kRollDeg), kRollPhase}, {share * DegreesToRadians(kYawDeg), 0}};
+}
+
+double Distance(double amplitude, double phase, double other_amplitude, double other_phase,
+                double turns) {
+  return (amplitude * Wave(phase, turns) - other_amplitude * Wave(other_phase, turns)).norm();
+}
+
 }  // namespace footing::style

@@ -102,6 +102,10 @@ class StyleMeter {
   Slides slides_;
 };
 
+/// Height of the hips that the published curves are read with: the gait paper's legs are about 1 m
+/// long.
+inline constexpr double kHipHeightM = 1.0;
+
 /// Stride length over speed by Alexander (1976, Nature 261, 129), from walks and runs of people,
 /// other mammals and birds: u = 0.25 g^0.5 stride^1.67 hip height^-1.17. Steps a second.
 double AlexanderCadence(double speed_mps, double hip_height_m);
@@ -109,5 +113,20 @@ double AlexanderCadence(double speed_mps, double hip_height_m);
 /// COM, vertical, peak to peak, of people who walk at 0.7 to 1.6 m/s (Orendurff et al. 2004, J
 /// Rehabil Res Dev 41, 829: 27.4 mm at 0.7 m/s, 48.3 mm at 1.6 m/s), linear between and beyond; m.
 double OrendurffBob(double speed_mps);
+
+/// Roll and yaw of the pelvis in a free walk (Saunders, Inman and Eberhart 1953, J Bone Joint Surg
+/// 35-A, 543): 5 degrees with the supporting side's hip highest shortly before the middle of the
+/// step, and 4 degrees with the landing leg's hip furthest ahead at touchdown. They hold at 1.2
+/// m/s. At other speeds they are taken in proportion to Alexander's step length, which is ours.
+struct PelvisReference {
+  Swing roll, yaw;
+};
+PelvisReference SaundersPelvis(double speed_mps);
+
+/// How far a harmonic is from another one, in the unit of their amplitudes: the length of the
+/// difference of their vectors, so that a wrong phase of a small swing matters little. `turns`: of
+/// the phase in a step; 0.5 for a harmonic of the stride, 1 for one of the step.
+double Distance(double amplitude, double phase, double other_amplitude, double other_phase,
+                double turns);
 
 }  // namespace footing::style

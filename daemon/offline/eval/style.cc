@@ -18,7 +18,6 @@
 namespace footing::eval {
 namespace {
 
-constexpr double kHipHeightM = 1.0;  ///< The gait paper's legs are about 1 m long.
 constexpr double kStyleSettleS = 6;  ///< And a second for each m/s.
 
 struct StyleOptions {
@@ -40,7 +39,7 @@ double Deviation(double value, double reference) {
 
 nlohmann::ordered_json RowOf(const biped::GaitCommand& command, const style::GaitStyle& style,
                              double weight_n, bool fell) {
-  const double cadence_hz = style::AlexanderCadence(style.speed_mps, kHipHeightM);
+  const double cadence_hz = style::AlexanderCadence(style.speed_mps, style::kHipHeightM);
   nlohmann::ordered_json row{{"gait", stream::Name(command.gait)},
                              {"speed_mps", command.speed_mps},
                              {"fell", fell},

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
       "  footing-tune --gait run --speeds 2,5 --out run.csv --method cmaes --iterations 20\n"
       "  footing-tune --gait walk --speeds 0.5 --from walk.csv --iterations 0 --trials 400 "
       "--seed 7 --json\n"
+      "  footing-tune --gait walk --speeds 0.5,1.2,1.75 --style --out style.csv --method cmaes\n"
       "  mpirun -n 4 footing-tune --gait walk --speeds 0.5,1.5 --out walk.csv");
   footing::tune::Options options;
   app->add_option("--gait", options.gait, "Gait: step, walk, run or jump")->required();
@@ -39,6 +40,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.01, 4.0));
   app->add_option("--threads", options.threads, "Number of threads (0: one per core)")
       ->check(CLI::Range(0, 256));
+  app->add_flag(
+      "--style", options.style,
+      "Search the style of walk or run: its tables, with what footing-eval style measures");
   app->add_flag("--json", options.json, "One JSON object on standard output");
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   options.command_line = "footing-tune";

@@ -10,7 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/units.h"
+#include "common/runtime/files.h"
 #include "common/virtual/devices/noise.h"
+#include "daemon/simulation/biped/model.h"
 #include "daemon/simulation/gait_service/config.h"
 
 namespace footing::tune {
@@ -53,15 +55,19 @@ Wanted WantedOf(const Task& task, double height_m) {
   return {};
 }
 
-Cost CostOf(const Task& task, const TrialResult& result) {
+Cost CostOf(const Task& task, const TrialResult& result, double weight_n) {
   const Wanted wanted = WantedOf(task, result.height_m);
   Cost cost;
   cost.failure = result.survived < 1 ? 10 + 10 * (1 - result.survived) : 0;
   if (task.paper && result.survived == 1 && !result.reached) cost.failure = 10;
   cost.speed = std::min(2.0, Square(result.speed_error_mps / 0.15));
-  cost.flight = Deviation(result.flight_s, wanted.flight_s);
-  cost.stance = Deviation(result.stance_s, wanted.stance_s);
-  if (task.speed_mps >= 0.3) cost.stride = Deviation(result.stride_m, wanted.stride_m);
+  if (task.style) {
+    cost.style = StyleCostOf(task.gait, result.style, weight_n, result.steady);
+  } else {
+    cost.flight = Deviation(result.flight_s, wanted.flight_s);
+    cost.stance = Deviation(result.stance_s, wanted.stance_s);
+    if (task.speed_mps >= 0.3) cost.stride = Deviation(result.stride_m, wanted.stride_m);
+  }
   cost.heading = std::min(2.0, Square(RadiansToDegrees(result.heading_error_rad) / 5));
   if (task.gait == Gait::kRun) {
     cost.legs = std::min(2.0, Square(std::max(0.0, 1 - result.leg_gap_m / kLegGapM)));
@@ -203,90 +209,82 @@ void Evolve(SearchState& state, const Evaluate& evaluate, std::uint64_t seed) {
 
 namespace {
 
-struct Row {
-  const char* gain;
-  double scale;
-  bool relative = true;
-};
-
 constexpr double kCoefficient = 0.25;  // Springs and dampers by about a quarter.
 constexpr double kLength = 0.02;       // Lengths by 2 %.
 
-const std::vector<Row> kEveryGait{{"servo.hip_stiffness_nm_per_rad", kCoefficient},
-                                  {"servo.hip_damping_nms_per_rad", kCoefficient},
-                                  {"attitude.roll_stiffness_nm_per_rad", kCoefficient},
-                                  {"attitude.roll_damping_nms_per_rad", kCoefficient},
-                                  {"attitude.pitch_stiffness_nm_per_rad", kCoefficient},
-                                  {"attitude.pitch_damping_nms_per_rad", kCoefficient}};
-const std::vector<Row> kOnTheGround{{"attitude.walk_yaw_stiffness_nm_per_rad", kCoefficient},
-                                    {"attitude.walk_yaw_damping_nms_per_rad", kCoefficient},
-                                    {"walking.leg_stiffness_n_per_m", kCoefficient},
-                                    {"walking.leg_damping_ns_per_m", kCoefficient},
-                                    {"walking.hip_height_m", kLength},
-                                    {"walking.step_width_m", 0.15}};
-const std::vector<Row> kInHops{{"hopping.touchdown_length_m", kLength}};
-const std::vector<Row> kRunning{{"attitude.run_yaw_stiffness_nm_per_rad", kCoefficient},
-                                {"attitude.run_yaw_damping_nms_per_rad", kCoefficient},
-                                {"hopping.run_leg_stiffness_n_per_m", kCoefficient},
-                                {"hopping.run_leg_damping_ns_per_m", kCoefficient},
-                                {"hopping.run_velocity_gain_s", 0.15},
-                                {"hopping.speed_gain_s", 0.003, false},
-                                {"hopping.run_foot_spacing_m", kCoefficient},
-                                {"recovery.idle_yield", kCoefficient}};
-const std::vector<Row> kJumping{{"attitude.jump_yaw_stiffness_nm_per_rad", kCoefficient},
-                                {"attitude.jump_yaw_damping_nms_per_rad", kCoefficient},
-                                {"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
-                                {"hopping.jump_leg_damping_ns_per_m", kCoefficient},
-                                {"hopping.jump_velocity_gain_s", 0.15},
-                                {"attitude.jump_lean_rad_per_mps", 0.03, false},
-                                {"recovery.spread_mps", kCoefficient}};
+const std::vector<DimensionRow> kEveryGait{{"servo.hip_stiffness_nm_per_rad", kCoefficient},
+                                           {"servo.hip_damping_nms_per_rad", kCoefficient},
+                                           {"attitude.roll_stiffness_nm_per_rad", kCoefficient},
+                                           {"attitude.roll_damping_nms_per_rad", kCoefficient},
+                                           {"attitude.pitch_stiffness_nm_per_rad", kCoefficient},
+                                           {"attitude.pitch_damping_nms_per_rad", kCoefficient}};
+const std::vector<DimensionRow> kOnTheGround{
+    {"attitude.walk_yaw_stiffness_nm_per_rad", kCoefficient},
+    {"attitude.walk_yaw_damping_nms_per_rad", kCoefficient},
+    {"walking.leg_stiffness_n_per_m", kCoefficient},
+    {"walking.leg_damping_ns_per_m", kCoefficient},
+    {"walking.hip_height_m", kLength},
+    {"walking.step_width_m", 0.15}};
+const std::vector<DimensionRow> kInHops{{"hopping.touchdown_length_m", kLength}};
+const std::vector<DimensionRow> kRunning{{"attitude.run_yaw_stiffness_nm_per_rad", kCoefficient},
+                                         {"attitude.run_yaw_damping_nms_per_rad", kCoefficient},
+                                         {"hopping.run_leg_stiffness_n_per_m", kCoefficient},
+                                         {"hopping.run_leg_damping_ns_per_m", kCoefficient},
+                                         {"hopping.run_velocity_gain_s", 0.15},
+                                         {"hopping.speed_gain_s", 0.003, false},
+                                         {"hopping.run_foot_spacing_m", kCoefficient},
+                                         {"recovery.idle_yield", kCoefficient}};
+const std::vector<DimensionRow> kJumping{{"attitude.jump_yaw_stiffness_nm_per_rad", kCoefficient},
+                                         {"attitude.jump_yaw_damping_nms_per_rad", kCoefficient},
+                                         {"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
+                                         {"hopping.jump_leg_damping_ns_per_m", kCoefficient},
+                                         {"hopping.jump_velocity_gain_s", 0.15},
+                                         {"attitude.jump_lean_rad_per_mps", 0.03, false},
+                                         {"recovery.spread_mps", kCoefficient}};
 /// Tuned by the paper: springs and dampers, the constants of equation (1), and the landing length;
 /// besides, lengths that its text leaves open.
-const std::vector<Row> kPaperOnTheGround{{"walking.leg_stiffness_n_per_m", kCoefficient},
-                                         {"walking.leg_damping_ns_per_m", kCoefficient},
-                                         {"paper.walk_offset_rad", 0.02, false},
-                                         {"paper.walk_offset_side_rad", 0.01, false},
-                                         {"paper.walk_gain_rad_per_mps", 0.15},
-                                         {"paper.walk_side_gain_rad_per_mps", 0.15},
-                                         {"paper.touchdown_length_m", kLength},
-                                         {"paper.swing_length_m", kLength},
-                                         {"paper.fall_extension_m", 0.005, false},
-                                         {"paper.rear_extension_m", 0.005, false},
-                                         {"paper.rise_passed_m", 0.03, false},
-                                         {"paper.rise_sideways_mps", 0.02, false},
-                                         {"paper.reach_mps", kCoefficient},
-                                         {"paper.step_below_mps", kCoefficient},
-                                         {"paper.thrust_extension_m", 0.01, false}};
-const std::vector<Row> kPaperRunning{{"hopping.run_leg_stiffness_n_per_m", kCoefficient},
-                                     {"paper_hop.run_side_gain_s", 0.15},
-                                     {"hopping.run_leg_damping_ns_per_m", kCoefficient},
-                                     {"hopping.run_velocity_gain_s", 0.15},
-                                     {"hopping.run_foot_spacing_m", kCoefficient},
-                                     {"hopping.idle_length_m", 0.05},
-                                     {"paper_hop.run_extension_m", 0.005, false},
-                                     {"paper_hop.leaving_extension_m", 0.005, false},
-                                     {"paper_hop.landing_extension_m", 0.01, false},
-                                     {"paper_hop.leap_extension_m", 0.01, false},
-                                     {"transition.run_to_walk_mps", 0.1},
-                                     {"transition.run_to_walk_margin_mps", 0.2},
-                                     {"transition.run_landing_stiffness_n_per_m", kCoefficient},
-                                     {"transition.run_landing_damping_ns_per_m", kCoefficient}};
-const std::vector<Row> kPaperJumping{{"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
-                                     {"hopping.jump_leg_damping_ns_per_m", kCoefficient},
-                                     {"hopping.jump_velocity_gain_s", 0.15},
-                                     {"paper_hop.jump_extension_share", 0.01, false},
-                                     {"paper_hop.landing_shortening_m", 0.01, false}};
+const std::vector<DimensionRow> kPaperOnTheGround{{"walking.leg_stiffness_n_per_m", kCoefficient},
+                                                  {"walking.leg_damping_ns_per_m", kCoefficient},
+                                                  {"paper.walk_offset_rad", 0.02, false},
+                                                  {"paper.walk_offset_side_rad", 0.01, false},
+                                                  {"paper.walk_gain_rad_per_mps", 0.15},
+                                                  {"paper.walk_side_gain_rad_per_mps", 0.15},
+                                                  {"paper.touchdown_length_m", kLength},
+                                                  {"paper.swing_length_m", kLength},
+                                                  {"paper.fall_extension_m", 0.005, false},
+                                                  {"paper.rear_extension_m", 0.005, false},
+                                                  {"paper.rise_passed_m", 0.03, false},
+                                                  {"paper.rise_sideways_mps", 0.02, false},
+                                                  {"paper.reach_mps", kCoefficient},
+                                                  {"paper.step_below_mps", kCoefficient},
+                                                  {"paper.thrust_extension_m", 0.01, false}};
+const std::vector<DimensionRow> kPaperRunning{
+    {"hopping.run_leg_stiffness_n_per_m", kCoefficient},
+    {"paper_hop.run_side_gain_s", 0.15},
+    {"hopping.run_leg_damping_ns_per_m", kCoefficient},
+    {"hopping.run_velocity_gain_s", 0.15},
+    {"hopping.run_foot_spacing_m", kCoefficient},
+    {"hopping.idle_length_m", 0.05},
+    {"paper_hop.run_extension_m", 0.005, false},
+    {"paper_hop.leaving_extension_m", 0.005, false},
+    {"paper_hop.landing_extension_m", 0.01, false},
+    {"paper_hop.leap_extension_m", 0.01, false},
+    {"transition.run_to_walk_mps", 0.1},
+    {"transition.run_to_walk_margin_mps", 0.2},
+    {"transition.run_landing_stiffness_n_per_m", kCoefficient},
+    {"transition.run_landing_damping_ns_per_m", kCoefficient}};
+const std::vector<DimensionRow> kPaperJumping{{"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
+                                              {"hopping.jump_leg_damping_ns_per_m", kCoefficient},
+                                              {"hopping.jump_velocity_gain_s", 0.15},
+                                              {"paper_hop.jump_extension_share", 0.01, false},
+                                              {"paper_hop.landing_shortening_m", 0.01, false}};
 
 }  // namespace
 
 std::vector<Dimension> DimensionsOf(Gait gait, bool paper) {
   std::vector<Dimension> dimensions;
-  const auto add = [&dimensions](const std::vector<Row>& rows) {
-    for (const Row& row : rows) {
-      const gait::GainField* gain = gait::FindGain(row.gain);
-      FOOTING_CHECK(gain != nullptr);
-      dimensions.push_back({gain, row.scale, row.relative});
-    }
+  const auto add = [&dimensions](const std::vector<DimensionRow>& rows) {
+    AddDimensions(rows, dimensions);
   };
   add(kEveryGait);
   switch (gait) {
@@ -337,13 +335,26 @@ Difference MeanOf(std::size_t count, const Value& value) {
 
 }  // namespace
 
-Result<Team> Team::Create(int threads, ranks::Ranks ranks, const std::vector<std::string>& gains) {
-  const Result<engine::EngineTexts> texts =
-      engine_files::ReadTexts({.gaits = "plain", .more_gains = gains});
+Result<Team> Team::Create(int threads, ranks::Ranks ranks, const std::vector<std::string>& gains,
+                          bool styled) {
+  Result<engine::EngineTexts> texts =
+      styled ? engine_files::ReadTexts()
+             : engine_files::ReadTexts({.gaits = "plain", .more_gains = gains});
   if (!texts) return texts.error();
+  if (styled) {
+    for (const std::string& path : gains) {
+      Result<std::string> text = config::ReadTextFile(path);
+      if (!text) return text.error();
+      texts->style.push_back({path, std::move(*text)});
+    }
+  }
+  const auto biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
+  if (!biped) return biped.error();
   Team team;
   team.ranks_ = ranks;
   team.texts_ = *texts;
+  team.styled_ = styled;
+  team.weight_n_ = biped->mass_kg() * kStandardGravityMps2;
   for (int i = 0; i < threads; ++i) {
     Result<engine::GaitEngine> engine = engine::GaitEngine::Create(*texts);
     if (!engine) return engine.error();
@@ -359,7 +370,7 @@ Result<void> Team::Prepare(const std::vector<Task>& tasks, const gait::GainTable
   for (const Task& task : tasks) {
     Result<engine::GaitEngine> engine = engine::GaitEngine::Create(texts_);
     if (!engine) return engine.error();
-    engine->UseGains(table);
+    Use(table, *engine);
     auto states =
         SettledStates(*engine, task, static_cast<int>(each), MixSeeds(seed, settled.size()));
     if (!states) return states.error();
@@ -392,22 +403,32 @@ engine::GaitEngine Team::OnTrack(std::string track) const {
   return std::move(engine).value();
 }
 
+void Team::Use(const gait::GainTable& table, engine::GaitEngine& engine) const {
+  if (styled_) {
+    engine.UseStyle(table);
+  } else {
+    engine.UseGains(table);
+  }
+}
+
 Cost Team::TryOne(engine::GaitEngine& engine, const gait::Gains& gains, std::size_t trial,
                   std::uint64_t seed) const {
   gait::GainTable table = table_;
   const auto& [task, start] = starts_[trial % starts_.size()];
   const Disturbance disturbance = Draw(task, MixSeeds(seed, trial));
   const stream::Gait tried = starts_.front().task.gait;
-  if (task.paper || disturbance.change_s > 0) {
+  if (task.paper || task.style || disturbance.change_s > 0) {
     table.Set(tried, WholeTable(gains));
   } else {
     table.Set(tried, {{"tried", 0, gains}});
   }
-  engine.UseGains(table);
-  if (disturbance.pit_m == 0) return CostOf(task, RunTrial(engine, start, task, disturbance));
+  Use(table, engine);
+  if (disturbance.pit_m == 0) {
+    return CostOf(task, RunTrial(engine, start, task, disturbance), weight_n_);
+  }
   engine::GaitEngine on_pit = OnTrack(PitTrack(start, disturbance));
-  on_pit.UseGains(table);
-  return CostOf(task, RunTrial(on_pit, start, task, disturbance));
+  Use(table, on_pit);
+  return CostOf(task, RunTrial(on_pit, start, task, disturbance), weight_n_);
 }
 
 std::vector<Cost> Team::TryOwn(const std::vector<gait::Gains>& gains, std::size_t trials,
@@ -452,6 +473,7 @@ Score ScoreOf(const std::vector<Cost>& costs) {
     score.mean.heading += cost.heading / n;
     score.mean.legs += cost.legs / n;
     score.mean.latency += cost.latency / n;
+    AddShare(cost.style, 1 / n, score.mean.style);
     score.falls += cost.failure > 0 ? 1 : 0;
   }
   score.survival = 1 - score.falls / n;
@@ -469,9 +491,10 @@ namespace {
 using nlohmann::json;
 
 json ToJson(const RunKey& key) {
-  return {{"gait", key.gait},     {"speeds_mps", key.speeds_mps}, {"seed", key.seed},
-          {"method", key.method}, {"trials", key.trials},         {"step", key.step},
-          {"from", key.from}};
+  return {{"gait", key.gait},     {"speeds_mps", key.speeds_mps},
+          {"seed", key.seed},     {"method", key.method},
+          {"trials", key.trials}, {"step", key.step},
+          {"style", key.style},   {"from", key.from}};
 }
 
 std::vector<double> Numbers(const Eigen::MatrixXd& matrix) {

@@ -9,6 +9,8 @@
 
 #include "common/base/result.h"
 #include "daemon/offline/compute/ranks.h"
+#include "daemon/offline/tune/dimension.h"
+#include "daemon/offline/tune/style_terms.h"
 #include "daemon/offline/tune/trial.h"
 #include "daemon/simulation/gait/gain_table.h"
 
@@ -27,9 +29,10 @@ struct Cost {
   double heading = 0;  ///< Turning: (heading error / 5 degrees)^2, at most 2.
   double legs = 0;  ///< Running: (what the gap lacks of 3 cm / 3 cm)^2, at most 2; 1: they touch.
   double latency = 0;  ///< Change to walking: (what is more than wanted / 10 %)^2, at most 2.
+  StyleCost style;     ///< With style; in place of flight, stance and stride.
 
   double total() const {
-    return failure + speed + flight + stance + stride + heading + legs + latency;
+    return failure + speed + flight + stance + stride + heading + legs + latency + style.total();
   }
 };
 
@@ -44,8 +47,8 @@ struct Wanted {
 /// walking: 0.6 s and 0.1 s for each m/s, which their medians are from 3.5 to 6 m/s.
 Wanted WantedOf(const Task& task, double height_m);
 
-/// Cost of one trial of a task.
-Cost CostOf(const Task& task, const TrialResult& result);
+/// Cost of one trial of a task; `weight_n` is the biped's, for its cost of transport.
+Cost CostOf(const Task& task, const TrialResult& result, double weight_n = 1);
 
 /// One iteration of a search, for the plot.
 struct HistoryPoint {
@@ -81,14 +84,6 @@ void Descend(SearchState& state, const Evaluate& evaluate);
 /// default constants); drawn from `seed` and the iteration.
 void Evolve(SearchState& state, const Evaluate& evaluate, std::uint64_t seed);
 
-/// One gain that is searched over; a step of 1 in the search is `scale`: of the logarithm when
-/// `relative`, else in the gain's own unit.
-struct Dimension {
-  const gait::GainField* gain;
-  double scale;
-  bool relative;
-};
-
 /// Parameters that the paper tunes: the servos' spring and damper coefficients, the constants of
 /// equations (1) and (2), and the landing length. `paper`: of the paper's own laws.
 std::vector<Dimension> DimensionsOf(stream::Gait gait, bool paper = false);
@@ -112,9 +107,10 @@ class Team {
  public:
   /// Reads the product's data, with the files `gains` in place of its tables of the same gaits,
   /// since an engine begins with the gains that it is created with. One engine for each thread of
-  /// this rank.
+  /// this rank. `styled`: the gaits as they are shipped, with style and foresight; `gains` and all
+  /// that is tried are tables of the style.
   static Result<Team> Create(int threads, ranks::Ranks ranks = {},
-                             const std::vector<std::string>& gains = {});
+                             const std::vector<std::string>& gains = {}, bool styled = false);
 
   const ranks::Ranks& ranks() const { return ranks_; }
 
@@ -132,6 +128,7 @@ class Team {
  private:
   Team() = default;
   engine::GaitEngine OnTrack(std::string track) const;
+  void Use(const gait::GainTable& table, engine::GaitEngine& engine) const;
 
   /// The jobs of this rank, on all of its threads.
   std::vector<Cost> TryOwn(const std::vector<gait::Gains>& gains, std::size_t trials,
@@ -142,6 +139,8 @@ class Team {
 
   ranks::Ranks ranks_;
   engine::EngineTexts texts_;
+  bool styled_ = false;
+  double weight_n_ = 0;
 
   std::vector<engine::GaitEngine> engines_;
   struct Start {
@@ -172,6 +171,7 @@ struct RunKey {
   std::string method;
   int trials = 0;
   double step = 1;
+  bool style = false;
   std::string from;  ///< All gains it starts from, as text.
 
   bool operator==(const RunKey&) const = default;

@@ -40,13 +40,14 @@ constexpr Range kChangesS{0.2, 1.2};
 constexpr Range kWalksMps{0.2, 1.4};  // As in `footing-eval transitions`.
 
 /// Shares of the trials, added up: pushed in a turn; pushed; turning; at a pit. The others are to
-/// walk.
+/// walk; with style see DrawStyled.
 struct Shares {
   double pushed_turning, pushed, turning, pits;
 };
 
-Shares SharesOf(Gait gait) {
-  if (gait == Gait::kRun) return {0.15, 0.45, 0.6, 0.75};
+Shares SharesOf(const Task& task) {
+  if (task.style) return {0, 0.3, 0.3, 0.4};
+  if (task.gait == Gait::kRun) return {0.15, 0.45, 0.6, 0.75};
   return {0, 0.5, 0.75, 1};
 }
 
@@ -96,6 +97,31 @@ Disturbance DrawPaper(const Task& task, noise::Random& random) {
   drawn.change.height_m = drawn_of(kHeightsM);
   drawn.change_s = drawn_of(kPaperChangesS);
   drawn.trial_s = kPaperChangeTrialS;
+  return drawn;
+}
+
+/// Trials with style.
+constexpr double kStyleSettlesS = 3;
+constexpr double kStyledTurnDeg = 2;
+constexpr double kSlowestStyledMps = 0.2;
+constexpr Range kSpeedChangesMps{0.2, 0.4};
+
+Disturbance DrawStyled(const Task& task, double kind, noise::Random& random, Disturbance drawn) {
+  constexpr double kTurning = 0.1, kChanging = 0.2;
+  drawn.kick_s = random.Uniform(0, 0.5);
+  const double sign = random.Uniform() < 0.5 ? 1 : -1;
+  if (kind < kTurning) {
+    drawn.turn_rad = sign * DegreesToRadians(kStyledTurnDeg);
+  } else if (kind < kChanging) {
+    const double by_mps = random.Uniform(kSpeedChangesMps.min, kSpeedChangesMps.max);
+    drawn.change_s = drawn.style_from_s = 1 + random.Uniform(0, 1);
+    drawn.change = {.gait = task.gait,
+                    .speed_mps = std::max(kSlowestStyledMps, task.speed_mps + sign * by_mps)};
+    drawn.change = biped::Limited(drawn.change);
+  } else {
+    drawn.style_from_s = kStyleSettlesS;
+    drawn.trial_s = kStyleSettlesS + kTrialS;
+  }
   return drawn;
 }
 
@@ -224,7 +250,7 @@ Disturbance Draw(const Task& task, std::uint64_t seed) {
     const bool highest = random.Uniform() < 0.5;
     drawn.height_m = highest ? highest_m : random.Uniform(kLowestM, highest_m);
   }
-  const Shares shares = SharesOf(task.gait);
+  const Shares shares = SharesOf(task);
   if (kind < shares.pushed_turning) drawn.turn_rad = turn_rad;
   if (kind < shares.pushed) return drawn;
   drawn.kick_ns = kSmallKickNs;
@@ -232,6 +258,9 @@ Disturbance Draw(const Task& task, std::uint64_t seed) {
   if (kind < shares.turning || widths.max == 0) {
     drawn.turn_rad = turn_rad;
     return drawn;
+  }
+  if (kind >= shares.pits && task.style) {
+    return DrawStyled(task, kind - shares.pits, random, drawn);
   }
   if (kind >= shares.pits) {
     drawn.change_s = random.Uniform(kChangesS.min, kChangesS.max);
@@ -275,12 +304,17 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
 
   engine.Restore(start);
   GaitMeter meter(task);
+  style::StyleMeter style_meter(kStepS);
   const int steps = StepsOf(disturbance.trial_s), kick_step = StepsOf(disturbance.kick_s);
   const int change_step = disturbance.change_s > 0 ? StepsOf(disturbance.change_s) : steps;
+  const bool other_gait = disturbance.change.gait != task.gait;
   TrialResult result;
   for (int i = 0; i < steps; ++i) {
     if (i == kick_step) Kick(disturbance, inputs);
-    if (i == change_step) inputs.direct_command = disturbance.change;
+    if (i == change_step) {
+      inputs.direct_command = disturbance.change;
+      if (!other_gait) meter = GaitMeter({task.gait, disturbance.change.speed_mps});
+    }
     if (disturbance.pit_m > 0 && task.gait == Gait::kRun) {
       const double to_edge_m = near_m - engine.Output().p_WC_m.x();
       const bool jumps = to_edge_m < kJumpLeadS * task.speed_mps && to_edge_m > -disturbance.pit_m;
@@ -291,7 +325,8 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
       result.survived = static_cast<double>(i) / steps;
       break;
     }
-    if (i < change_step) {
+    if (i * kStepS >= disturbance.style_from_s) style_meter.Add(engine.Output());
+    if (i < change_step || !other_gait) {
       meter.Add(engine.Output(), kStepS);
       continue;
     }
@@ -301,6 +336,8 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
     }
   }
   meter.Report(result);
+  result.style = style_meter.Report();
+  result.steady = disturbance.change_s == 0;
   if (!ScoresHeading(disturbance)) result.heading_error_rad = 0;
   if (!ScoresLegs(disturbance)) result.leg_gap_m = INFINITY;
   result.height_m = disturbance.height_m;

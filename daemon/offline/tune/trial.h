@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "daemon/offline/analysis/gait_style.h"
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/engine/state.h"
 
@@ -21,6 +22,7 @@ struct Task {
   double speed_mps = 0;
   bool paper = false;  ///< Under the paper's own laws: other disturbances.
   stream::Gait into = stream::Gait::kUnspecified;  ///< The trial is a change to this gait.
+  bool style = false;  ///< With style, which is measured: other disturbances.
 };
 
 /// Disturbances of a trial. Everything is drawn, and mixed so that no trial of footing-eval draws
@@ -33,9 +35,10 @@ struct Disturbance {
   double height_m = 0.2;
   double pit_m = 0;        ///< Width; 0: no pit.
   double pit_ahead_m = 0;  ///< From the start to the near edge.
-  double change_s = 0;     ///< From the start to the command of another gait; 0: none.
+  double change_s = 0;     ///< From the start to the command of another gait or speed; 0: none.
   biped::GaitCommand change{};
   double trial_s = kTrialS;
+  double style_from_s = INFINITY;  ///< From then on the style is measured.
 };
 
 /// Disturbances as in the acceptance tests (tests/scenarios/biped_table.py). Half of the trials are
@@ -47,6 +50,10 @@ struct Disturbance {
 ///
 /// The paper's laws plan no pit: a push of up to 4 N s, and in half of the trials a change to
 /// another gait of Figure 9 with a command as `footing-eval transitions` draws it.
+///
+/// With style 30 % are pushed so, 10 % come to a pit, 10 % turn by 2 degrees a step, up to which
+/// the style is there in full, and 10 % change their speed by up to 0.4 m/s. The others go straight
+/// on for 8 s, of which the style of the last 5 s is measured.
 Disturbance Draw(const Task& task, std::uint64_t seed);
 
 /// Whether the trial's turn is to be followed by the body: no large push disturbs it.
@@ -68,8 +75,10 @@ struct TrialResult {
   double height_m = 0.2;         ///< That was commanded, of a jump.
   double heading_error_rad = 0;  ///< Root mean square; 0 where it is not scored.
   double leg_gap_m = INFINITY;   ///< Least, between the legs; infinite where it is not scored.
-  double latency_s = 0;  ///< From the command of another gait to it, or to the end; 0: none.
-  bool reached = true;   ///< The gait commanded last is there at the end.
+  double latency_s = 0;         ///< From the command of another gait to it, or to the end; 0: none.
+  bool reached = true;          ///< The gait commanded last is there at the end.
+  style::GaitStyle style = {};  ///< Without a step where it is not measured.
+  bool steady = true;           ///< At one speed all along.
 };
 
 /// A usage error that names the limit when a speed is beyond the gait's, to which the engine would
@@ -89,7 +98,7 @@ Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engin
 
 /// One trial from `start`, under the gains that the engine uses. A pit needs an engine
 /// on its track. Of a trial that changes its gait, all but the latency is measured before that
-/// command.
+/// command; of one that changes its speed, the speed is measured after it.
 TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
                      const Disturbance& disturbance);
 

@@ -47,7 +47,7 @@ class Tuning {
         team_(std::move(team)),
         table_(std::move(table)),
         paper_(table_.At(gait_, 0).paper.laws > 0.5),
-        dimensions_(DimensionsOf(gait_, paper_)) {}
+        dimensions_(options.style ? StyleDimensionsOf(gait_) : DimensionsOf(gait_, paper_)) {}
 
   Result<void> Resume() {
     searches_.assign(options_.speeds_mps.size(),
@@ -115,13 +115,8 @@ class Tuning {
   RunKey Key() const {
     std::vector<const gait::GainField*> columns;
     for (const gait::GainField& field : gait::GainFields()) columns.push_back(&field);
-    RunKey key{options_.gait,
-               options_.speeds_mps,
-               options_.seed,
-               options_.method,
-               options_.trials,
-               options_.step,
-               ""};
+    RunKey key{options_.gait,   options_.speeds_mps, options_.seed,  options_.method,
+               options_.trials, options_.step,       options_.style, ""};
     for (const stream::Gait gait : stream::kGaits) {
       key.from += gait::WriteGains(gait, table_.SetsOf(gait), columns, "");
     }
@@ -131,7 +126,8 @@ class Tuning {
   Result<void> TuneSet(std::size_t index) {
     const Task task{gait_, options_.speeds_mps[index]};
     const std::uint64_t seed = MixSeeds(options_.seed, index);
-    const std::vector<Task> tasks = TasksOf(gait_, options_.speeds_mps, index, paper_);
+    std::vector<Task> tasks = TasksOf(gait_, options_.speeds_mps, index, paper_);
+    for (Task& each : tasks) each.style = options_.style;
     if (const auto prepared = team_.Prepare(tasks, table_, seed, Others(index)); !prepared) {
       return prepared;
     }
@@ -260,6 +256,9 @@ Result<void> Check(const Options& options) {
       return UsageError("--speeds: must increase");
     }
   }
+  if (options.style && !HasStyle(stream::GaitNamed(options.gait))) {
+    return UsageError("--style: walk and run have a style to search, " + options.gait + " has not");
+  }
   return CheckSpeeds(stream::GaitNamed(options.gait), options.speeds_mps);
 }
 
@@ -267,10 +266,11 @@ Result<ordered_json> RunChecked(const Options& options, const ranks::Ranks& rank
   if (const auto good = Check(options); !good) return good.error();
   const auto texts = engine_files::ReadTexts();
   if (!texts) return texts.error();
-  auto table = TableOf(*texts, options.from);
+  auto table = TableOf(options.style ? texts->style : texts->gains, options.from);
   if (!table) return table.error();
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  auto team = Team::Create(options.threads > 0 ? options.threads : cores, ranks, options.from);
+  auto team = Team::Create(options.threads > 0 ? options.threads : cores, ranks, options.from,
+                           options.style);
   if (!team) return team.error();
   Tuning tuning(options, std::move(*team), std::move(*table));
   if (const auto resumed = tuning.Resume(); !resumed) return resumed.error();
@@ -288,10 +288,10 @@ int Run(const Options& options, const ranks::Ranks& ranks) {
   return 0;
 }
 
-Result<gait::GainTable> TableOf(const engine::EngineTexts& texts,
+Result<gait::GainTable> TableOf(const std::vector<engine::GainText>& texts,
                                 const std::vector<std::string>& paths) {
   gait::GainTable table;
-  for (const engine::GainText& gains : texts.gains) {
+  for (const engine::GainText& gains : texts) {
     if (const auto added = table.Add(gains.text, gains.origin); !added) return added.error();
   }
   for (const std::string& path : paths) {
@@ -329,6 +329,13 @@ std::string ScoreText(const Score& score) {
          std::to_string(score.falls) + " falls of " + std::to_string(score.trials);
 }
 
+ordered_json StyleJson(const StyleCost& cost) {
+  return {{"cadence", cost.cadence},    {"bob", cost.bob},
+          {"roll", cost.roll},          {"yaw", cost.yaw},
+          {"slide", cost.slide},        {"jerk", cost.jerk},
+          {"transport", cost.transport}};
+}
+
 ordered_json ToJson(const Score& score) {
   return {{"objective", score.mean.total()},
           {"half_width", score.total_half_width},
@@ -342,7 +349,8 @@ ordered_json ToJson(const Score& score) {
           {"stride", score.mean.stride},
           {"heading", score.mean.heading},
           {"legs", score.mean.legs},
-          {"latency", score.mean.latency}};
+          {"latency", score.mean.latency},
+          {"style", StyleJson(score.mean.style)}};
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct Options {
   int trials = 24;
   double step = 1;  ///< The search's first: CMA-ES's sigma.
   int threads = 0;  ///< 0: one a core.
+  bool style = false;
   bool json = false;
   std::string command_line;  ///< As typed, for the table's comment.
 };
@@ -33,7 +34,7 @@ struct Options {
 int Run(const Options& options, const ranks::Ranks& ranks);
 
 /// The table of these texts, with the files of `paths` read after them.
-Result<gait::GainTable> TableOf(const engine::EngineTexts& texts,
+Result<gait::GainTable> TableOf(const std::vector<engine::GainText>& texts,
                                 const std::vector<std::string>& paths);
 
 /// Writes beside `path` and renames, so that what is there is always whole.

@@ -147,6 +147,12 @@ void GaitEngine::UseGains(const gait::GainTable& table) {
   parts_->gains_ahead.Forget();
 }
 
+void GaitEngine::UseStyle(const gait::GainTable& table) {
+  parts_->tables.style = table;
+  parts_->gains.Forget();
+  parts_->gains_ahead.Forget();
+}
+
 EngineState GaitEngine::Save() const {
   EngineState state = parts_->state;
   state.world = parts_->on.world.Save();

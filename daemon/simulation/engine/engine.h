@@ -219,6 +219,9 @@ class GaitEngine {
   /// Allocates.
   void UseGains(const gait::GainTable& table);
 
+  /// Other tables of the style from the next step on, likewise.
+  void UseStyle(const gait::GainTable& table);
+
   /// Everything that changes with time, as a value (state.h); Restore brings an engine on the same
   /// track back to that step.
   EngineState Save() const;

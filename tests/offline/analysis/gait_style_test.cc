@@ -123,5 +123,22 @@ TEST(PublishedCurves, AreAlexandersAndOrendurffs) {
   EXPECT_DOUBLE_EQ(OrendurffBob(1.6), 0.0483);
 }
 
+TEST(PublishedCurves, AreSaundersPelvisInAFreeWalkAndSmallerInASlowOne) {
+  const PelvisReference free = SaundersPelvis(1.2), slow = SaundersPelvis(0.5);
+  EXPECT_NEAR(RadiansToDegrees(free.roll.amplitude_rad), 5, 1e-9);
+  EXPECT_NEAR(RadiansToDegrees(free.yaw.amplitude_rad), 4, 1e-9);
+  const double step_share = (0.5 / AlexanderCadence(0.5, 1)) / (1.2 / AlexanderCadence(1.2, 1));
+  EXPECT_NEAR(slow.yaw.amplitude_rad, step_share * free.yaw.amplitude_rad, 1e-12);
+  EXPECT_EQ(SaundersPelvis(0).roll.amplitude_rad, 0);
+}
+
+TEST(PublishedCurves, AreAsFarAwayAsAmplitudeAndPhaseSay) {
+  EXPECT_NEAR(Distance(3, 0.2, 3, 0.2, 0.5), 0, 1e-12);
+  EXPECT_NEAR(Distance(5, 0.2, 3, 0.2, 0.5), 2, 1e-12);
+  EXPECT_NEAR(Distance(3, 0.2, 3, 1.2, 0.5), 6, 1e-12);  // The other side's step.
+  EXPECT_NEAR(Distance(3, 0, 4, 0.25, 1), 5, 1e-12);
+  EXPECT_NEAR(Distance(0, 0.7, 4, 0, 1), 4, 1e-12);
+}
+
 }  // namespace
 }  // namespace footing::style

@@ -9,7 +9,7 @@
 namespace footing::tune {
 namespace {
 
-const RunKey kKey{"walk", {0.5, 1.5}, 7, "cmaes", 24, 1, "gains"};
+const RunKey kKey{"walk", {0.5, 1.5}, 7, "cmaes", 24, 1, false, "gains"};
 
 std::vector<double> Roughly(const std::vector<Eigen::VectorXd>& points) {
   std::vector<double> values;

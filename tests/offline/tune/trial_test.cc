@@ -81,7 +81,7 @@ const Task kTrialWalk{stream::Gait::kWalk, 0.8};
 Team NewTeam(int threads) {
   auto team = Team::Create(threads);
   EXPECT_TRUE(team.ok());
-  EXPECT_TRUE(team->Prepare({kTrialWalk}, *TableOf(*engine_files::ReadTexts(), {}), 3).ok());
+  EXPECT_TRUE(team->Prepare({kTrialWalk}, *TableOf(engine_files::ReadTexts()->gains, {}), 3).ok());
   return std::move(team).value();
 }
 
@@ -133,7 +133,7 @@ TEST(Trials, BrakeWithTheTablesOtherSets) {
   const Task run{stream::Gait::kRun, 3.5};
   auto team = Team::Create(1);
   ASSERT_TRUE(team.ok());
-  const gait::GainTable table = *TableOf(*engine_files::ReadTexts(), {});
+  const gait::GainTable table = *TableOf(engine_files::ReadTexts()->gains, {});
   const gait::Gains tried = table.At(run.gait, run.speed_mps);
   gait::GainSet weak{"slow", 1, tried};
   weak.gains.hopping.run_leg_stiffness_n_per_m = 500;

@@ -51,6 +51,18 @@ with tempfile.TemporaryDirectory() as folder:
     assert still.returncode == 0, still.stderr  # Its pits are at the start of the track.
     assert run(TUNE, "--gait", "hop", "--speeds", "1", "--out", "x").returncode == 2
 
+    styled = pathlib.Path(folder, "style.csv")
+    searched = run(TUNE, "--gait", "walk", "--speeds", "1.2", "--style", "--trials", "1", "--iterations", "1", "--out",
+                   str(styled), "--json")
+    assert searched.returncode == 0, searched.stderr
+    found = json.loads(searched.stdout)["sets"][0]
+    assert 0 < found["before"]["style"]["transport"] < 1 and "style.bob_share" in found["gains"], found
+    assert "style.pelvis_roll_rad" in styled.read_text()
+    plain = run(TUNE, "--gait", "walk", "--speeds", "1.2", "--trials", "1", "--out", str(styled))
+    assert plain.returncode == 4 and "is of a run with another" in plain.stderr, plain.stderr
+    still = run(TUNE, "--gait", "step", "--speeds", "0", "--style", "--out", "x")
+    assert still.returncode == 2 and "walk and run have a style" in still.stderr, still.stderr
+
     evaluated = run(EVAL, "gait", "--gait", "step", "--seconds", "2", "--gains", str(broken),
                     "--json")
     assert evaluated.returncode == 0, evaluated.stderr
