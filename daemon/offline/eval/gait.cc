@@ -60,7 +60,7 @@ double PushTime(const GaitOptions& options, Random& random) {
   return std::min(0.3 * options.seconds, 3 + options.speed_mps) + phase * kCycleS;
 }
 
-/// By then every gait is under way.
+/// A tow begins at a random moment within a second from here on.
 constexpr double kTowFromS = 2;
 
 std::optional<GroundCourse> GroundCourseOf(const GaitOptions& options, double length_m,
@@ -108,6 +108,8 @@ Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& tr
   if (!engine) return engine.error();
   const double push_s = PushTime(options, random);
   const double drawn_deg = random.Uniform(0, 360);
+  const bool tows = options.tow.force_n != 0;
+  const double tow_s = tows ? kTowFromS + random.Uniform(0, 1) : INFINITY;
   const double direction_rad = DegreesToRadians(options.push_direction_deg.value_or(drawn_deg));
   const biped::GaitCommand command = CommandOf(options);
   const double step_s = engine::EngineConfig{}.step_s;
@@ -127,7 +129,7 @@ Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& tr
       walker.Push(options.push_ns, direction_rad);
       pushed = true;
     }
-    if (survived_s >= kTowFromS) {
+    if (survived_s >= tow_s) {
       walker.Tow(options.tow.force_n, DegreesToRadians(options.tow.direction_deg));
     }
     const engine::EngineOutput& output = walker.Advance();
@@ -303,7 +305,7 @@ void AddRoughGround(CLI::App& command, GaitOptions& options) {
       ->check(CLI::Range(0.0, 0.05));
   command
       .add_option("--tow", options.tow.force_n,
-                  "Force that pulls at the body from 2 s on, N; negative: backwards")
+                  "Force that pulls at the body from 2 to 3 s on, N; negative: backwards")
       ->check(CLI::Range(-200.0, 200.0));
   command.add_option("--tow-direction", options.tow.direction_deg,
                      "Direction of the tow, degrees: 0 pulls forwards, 90 to the left");
