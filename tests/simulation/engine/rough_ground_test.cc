@@ -1,3 +1,4 @@
+#include "daemon/simulation/engine/state.h"
 #include "tests/simulation/engine/engine_fixture.h"
 
 namespace footing::engine {
