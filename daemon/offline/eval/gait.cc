@@ -30,6 +30,7 @@ struct Trials {
   int pits = 0, steps = 0, crossed = 0;
   double survived_s_min = 0;
   double speed_sum_mps = 0;
+  double aside_sum_mps = 0;
   double apex_sum_m = 0;
   RootMeanSquare speed_error, heading_error;
   double leg_gap_min_m = INFINITY;
@@ -59,6 +60,9 @@ double PushTime(const GaitOptions& options, Random& random) {
   return std::min(0.3 * options.seconds, 3 + options.speed_mps) + phase * kCycleS;
 }
 
+/// A tow begins at a random moment within a second from here on.
+constexpr double kTowFromS = 2;
+
 std::optional<GroundCourse> GroundCourseOf(const GaitOptions& options, double length_m,
                                            Random& random) {
   if (options.step_m != 0) return MakeStepCourse(options.step_m, length_m, random);
@@ -66,19 +70,46 @@ std::optional<GroundCourse> GroundCourseOf(const GaitOptions& options, double le
   return MakeSlopeCourse(options.slope_deg, options.speed_mps, length_m, random);
 }
 
+PitCourse PitCourseOf(const GaitOptions& options, double length_m, Random& random) {
+  if (!options.pit_m) return {};
+  if (options.radius_m == 0) return MakePitCourse(*options.pit_m, length_m, random);
+  return MakeCurvedPitCourse(*options.pit_m, length_m, options.radius_m, random);
+}
+
+Result<engine::GaitEngine> EngineOf(const GaitOptions& options, const PitCourse& course,
+                                    const std::optional<GroundCourse>& ground) {
+  if (options.pit_m) return NewEngineOn(course.track, options.surface);
+  return ground ? NewEngineOn(ground->track, options.surface) : NewEngine(options.surface);
+}
+
+/// Adds what a trial came to.
+void AddTrial(const GaitStatistics& statistics, const Walker& walker,
+              const engine::EngineOutput& last, double survived_s, Trials& trials) {
+  trials.falls += walker.fell() ? 1 : 0;
+  trials.survived_s_min = std::min(trials.survived_s_min, survived_s);
+  trials.simulated_s += survived_s;
+  trials.speed_sum_mps += statistics.speed_mean_mps();
+  trials.aside_sum_mps += statistics.aside_mean_mps();
+  trials.apex_sum_m += statistics.apex_height_m();
+  trials.speed_error.Add(statistics.speed_error_rms_mps());
+  trials.heading_error.Add(statistics.heading_error_rms_rad());
+  trials.leg_gap_min_m = std::min(trials.leg_gap_min_m, walker.leg_gap_min_m());
+  trials.root_force_max_n = std::max(trials.root_force_max_n, last.root_force_max_n);
+  trials.state_hash = text::AddFnv(trials.state_hash, last.state_hash);
+}
+
 Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& trials) {
   Random random(seed);
   const double length_m = options.speed_mps * options.seconds;
-  const PitCourse course =
-      options.pit_m ? MakePitCourse(*options.pit_m, length_m, random) : PitCourse{};
+  const PitCourse course = PitCourseOf(options, length_m, random);
   const std::optional<GroundCourse> ground =
       options.pit_m ? std::nullopt : GroundCourseOf(options, length_m, random);
-  Result<engine::GaitEngine> engine = options.pit_m ? NewEngineOn(course.track)
-                                      : ground      ? NewEngineOn(ground->track)
-                                                    : NewEngine();
+  Result<engine::GaitEngine> engine = EngineOf(options, course, ground);
   if (!engine) return engine.error();
   const double push_s = PushTime(options, random);
   const double drawn_deg = random.Uniform(0, 360);
+  const bool tows = options.tow.force_n != 0;
+  const double tow_s = tows ? kTowFromS + random.Uniform(0, 1) : INFINITY;
   const double direction_rad = DegreesToRadians(options.push_direction_deg.value_or(drawn_deg));
   const biped::GaitCommand command = CommandOf(options);
   const double step_s = engine::EngineConfig{}.step_s;
@@ -98,6 +129,9 @@ Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& tr
       walker.Push(options.push_ns, direction_rad);
       pushed = true;
     }
+    if (survived_s >= tow_s) {
+      walker.Tow(options.tow.force_n, DegreesToRadians(options.tow.direction_deg));
+    }
     const engine::EngineOutput& output = walker.Advance();
     survived_s = output.time_s;
     if (options.pit_m) walker.Command(pilot.Command(output));
@@ -107,21 +141,11 @@ Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& tr
         survived_s > 0.4 * options.seconds && (!ground_pilot || ground_pilot->settled());
     if (settled) statistics.Add(output, step_s);
   }
-  const engine::EngineOutput& last = engine->Output();
-  trials.falls += walker.fell() ? 1 : 0;
+  AddTrial(statistics, walker, engine->Output(), survived_s, trials);
   trials.pits += pilot.met(walker.fell());
   trials.crossed += pilot.crossed();
   if (ground_pilot) trials.steps += ground_pilot->met(walker.fell());
   if (ground_pilot) trials.crossed += ground_pilot->crossed();
-  trials.survived_s_min = std::min(trials.survived_s_min, survived_s);
-  trials.simulated_s += survived_s;
-  trials.speed_sum_mps += statistics.speed_mean_mps();
-  trials.apex_sum_m += statistics.apex_height_m();
-  trials.speed_error.Add(statistics.speed_error_rms_mps());
-  trials.heading_error.Add(statistics.heading_error_rms_rad());
-  trials.leg_gap_min_m = std::min(trials.leg_gap_min_m, walker.leg_gap_min_m());
-  trials.root_force_max_n = std::max(trials.root_force_max_n, last.root_force_max_n);
-  trials.state_hash = text::AddFnv(trials.state_hash, last.state_hash);
   return {};
 }
 
@@ -171,6 +195,14 @@ nlohmann::ordered_json Report(const GaitOptions& options, std::uint64_t seed, co
     report["crossed"] = trials.crossed;
   }
   if (options.slope_deg != 0) report["slope_deg"] = options.slope_deg;
+  if (options.radius_m != 0) report["radius_m"] = options.radius_m;
+  if (options.surface.friction != 0) report["friction"] = options.surface.friction;
+  if (options.surface.sinks_m != 0) report["soft_m"] = options.surface.sinks_m;
+  if (options.tow.force_n != 0) {
+    report["tow_n"] = options.tow.force_n;
+    report["tow_direction_deg"] = options.tow.direction_deg;
+    report["aside_mean_mps"] = trials.aside_sum_mps / options.trials;
+  }
   if (options.step_m != 0) {
     report["step_m"] = options.step_m;
     report["steps"] = trials.steps;
@@ -183,7 +215,8 @@ int RunSweep(const GaitOptions& options, std::uint64_t seed, bool json) {
   const PushSweep sweep{.command = CommandOf(options),
                         .directions = options.push_directions,
                         .phases = options.push_phases,
-                        .impulse_ns = options.push_ns};
+                        .impulse_ns = options.push_ns,
+                        .surface = options.surface};
   PushSweepResult result;
   Progress progress("gait", "trials", options.trials, clock::MonotonicNs());
   for (int i = 0; i < options.trials; ++i) {
@@ -217,6 +250,16 @@ int Run(const GaitOptions& options, bool json) {
   if (options.pit_m.has_value() + (options.slope_deg != 0) + (options.step_m != 0) > 1) {
     return cli::Report(UsageError("--slope, --step and --pit: one of them at a time"));
   }
+  if (options.radius_m != 0 && !options.pit_m) {
+    return cli::Report(UsageError("--radius: goes with --pit; without pits, --turn makes a curve"));
+  }
+  if (options.pit_m && options.turn_deg != 0) {
+    return cli::Report(
+        UsageError("--turn: at pits the trial steers along the track; --radius curves it"));
+  }
+  if (options.tow.force_n != 0 && options.push_directions > 0) {
+    return cli::Report(UsageError("--tow: a sweep of pushes has none"));
+  }
   if (options.step_m != 0 && CommandOf(options).speed_mps == 0) {
     return cli::Report(
         UsageError("--step: none is met in place; give --speed and a gait that moves"));
@@ -229,7 +272,8 @@ int Run(const GaitOptions& options, bool json) {
   const Result<double> ratio =
       MeasureStepCostRatio(CommandOf(options), {.slope_deg = options.slope_deg,
                                                 .step_m = options.step_m,
-                                                .pit_m = options.pit_m.value_or(0)});
+                                                .pit_m = options.pit_m.value_or(0),
+                                                .surface = options.surface});
   if (!ratio) return cli::Report(ratio.error());
   PrintReport(Report(options, *seed, *trials, *ratio), json);
   return 0;
@@ -243,6 +287,31 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
   AddOptions(*command, *options);
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
+
+namespace {
+
+void AddRoughGround(CLI::App& command, GaitOptions& options) {
+  command
+      .add_option("--radius", options.radius_m,
+                  "Radius of the curves in which the pits lie, m (default: straight)")
+      ->check(CLI::Range(5.0, 1000.0));
+  command
+      .add_option("--friction", options.surface.friction,
+                  "Sliding friction of the ground (default: 0.9, the biped's)")
+      ->check(CLI::Range(0.05, 2.0));
+  command
+      .add_option("--soft", options.surface.sinks_m,
+                  "How far a foot sinks into the ground under the whole weight, m (default: hard)")
+      ->check(CLI::Range(0.0, 0.05));
+  command
+      .add_option("--tow", options.tow.force_n,
+                  "Force that pulls at the body from 2 to 3 s on, N; negative: backwards")
+      ->check(CLI::Range(-200.0, 200.0));
+  command.add_option("--tow-direction", options.tow.direction_deg,
+                     "Direction of the tow, degrees: 0 pulls forwards, 90 to the left");
+}
+
+}  // namespace
 
 void AddOptions(CLI::App& command, GaitOptions& options) {
   command.add_option("--gait", options.gait, "Gait: step, walk, run or jump")->required();
@@ -290,6 +359,7 @@ void AddOptions(CLI::App& command, GaitOptions& options) {
                   "Lead of the jump command before a pit, s (run only)")
       ->check(CLI::Range(0.0, 5.0));
   command.add_flag("--no-jump", options.no_jump, "Give a run no jump commands at pits");
+  AddRoughGround(command, options);
 }
 
 namespace {
@@ -316,6 +386,9 @@ void GaitStatistics::Add(const engine::EngineOutput& output, double step_s) {
   const double moved_m = output.gait.speed_mps * step_s;
   time_s_ += step_s;
   distance_m_ += moved_m;
+  const double heading_rad = output.gait.heading_rad;
+  aside_m_ += step_s * (std::cos(heading_rad) * output.v_WC_mps.y() -
+                        std::sin(heading_rad) * output.v_WC_mps.x());
   window_s_ += step_s;
   window_m_ += moved_m;
   if (window_s_ >= kWindowS) {

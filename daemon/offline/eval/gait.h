@@ -13,6 +13,12 @@ namespace footing::eval {
 /// `gait`: trials of one gait at one command, each kicked.
 void AddGaitCommand(CLI::App& app, Shared& shared);
 
+/// A force on the body that goes on.
+struct TowOptions {
+  double force_n = 0;
+  double direction_deg = 0;
+};
+
 /// Options of footing-eval gait.
 struct GaitOptions {
   std::string gait = "walk";
@@ -30,8 +36,11 @@ struct GaitOptions {
   int push_directions = 0;
   int push_phases = 12;
   std::optional<double> pit_m;
+  double radius_m = 0;
   double jump_lead_s = 0.8;
   bool no_jump = false;
+  terrain::Surface surface;
+  TowOptions tow;
 };
 
 /// Adds the options to the subcommand. `options` must outlive the parsing.
@@ -62,6 +71,7 @@ class GaitStatistics {
   double speed_mean_mps() const { return time_s_ > 0 ? distance_m_ / time_s_ : 0; }
   double speed_error_rms_mps() const { return speed_error_.value(); }
   double heading_error_rms_rad() const { return heading_error_.value(); }
+  double aside_mean_mps() const { return time_s_ > 0 ? aside_m_ / time_s_ : 0; }
   double apex_height_m() const { return hops_ > 0 ? apex_sum_m_ / hops_ : 0; }
 
  private:
@@ -70,6 +80,7 @@ class GaitStatistics {
   double commanded_mps_;
   double time_s_ = 0;
   double distance_m_ = 0;
+  double aside_m_ = 0;  ///< To the left of the heading.
   double window_s_ = 0;
   double window_m_ = 0;
   RootMeanSquare speed_error_;

@@ -129,9 +129,10 @@ double LevelLength(const biped::GaitCommand& command, const GroundKind& kind) {
 Result<StepCost> StepCost::Create(const biped::GaitCommand& command, const GroundKind& kind,
                                   double push_ns) {
   const std::optional<std::string> track = MakeShortTrack(kind, LevelLength(command, kind));
-  Result<engine::GaitEngine> engine = track ? NewEngineOn(*track) : NewEngine();
+  Result<engine::GaitEngine> engine =
+      track ? NewEngineOn(*track, kind.surface) : NewEngine(kind.surface);
   if (!engine) return engine.error();
-  Result<physics::World> world = NewWorld(track);
+  Result<physics::World> world = NewWorld(track, kind.surface);
   if (!world) return world.error();
   StepCost cost(std::move(*engine), std::move(*world));
   Walker walker(cost.engine_);

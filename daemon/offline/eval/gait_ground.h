@@ -28,11 +28,12 @@ GroundCourse MakeStepCourse(double step_m, double length_m, Random& random);
 /// A level run-up of random length on which `speed_mps` is reached, then one slope of `length_m`.
 GroundCourse MakeSlopeCourse(double slope_deg, double speed_mps, double length_m, Random& random);
 
-/// Ground of a trial, at most one of these features; 0: absent.
+/// Ground of a trial, at most one of slope, step and pit; 0: absent.
 struct GroundKind {
   double slope_deg = 0;
   double step_m = 0;
   double pit_m = 0;  ///< Width.
+  terrain::Surface surface = {};
 };
 
 /// Ground of that kind in three segments at most, so that the world keeps all of it in its place:

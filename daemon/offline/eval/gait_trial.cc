@@ -72,10 +72,17 @@ Result<std::uint64_t> ParseSeed(const std::string& text) {
   return seed;
 }
 
-Result<engine::GaitEngine> NewEngine() {
+Result<engine::GaitEngine> NewEngine(const terrain::Surface& surface) {
   Result<engine::EngineTexts> texts = ReadTexts();
   if (!texts) return texts.error();
-  return engine::GaitEngine::Create(*texts);
+  return engine::GaitEngine::Create(*texts, {.surface = surface});
+}
+
+Result<engine::GaitEngine> NewEngineOn(const std::string& track, const terrain::Surface& surface) {
+  Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  texts->track = track;
+  return engine::GaitEngine::Create(*texts, {.surface = surface});
 }
 
 Result<engine::GaitEngine> NewEngineOn(const std::string& track,
@@ -87,7 +94,8 @@ Result<engine::GaitEngine> NewEngineOn(const std::string& track,
   return engine::GaitEngine::Create(*texts, {.interface = interface});
 }
 
-Result<physics::World> NewWorld(const std::optional<std::string>& track_text) {
+Result<physics::World> NewWorld(const std::optional<std::string>& track_text,
+                                const terrain::Surface& surface) {
   Result<engine::EngineTexts> texts = ReadTexts();
   if (!texts) return texts.error();
   Result<biped::BipedParameters> biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
@@ -97,7 +105,8 @@ Result<physics::World> NewWorld(const std::optional<std::string>& track_text) {
   if (!track) return track.error();
   const terrain::GroundText ground = terrain::GroundMjcf(*track);
   return physics::World::FromMjcf(
-      biped::WriteMjcf(*biped, ground.mjcf, {}, engine::EngineConfig{}.step_s), biped::Names());
+      biped::WriteMjcf(biped::On(*biped, surface), ground.mjcf, {}, engine::EngineConfig{}.step_s),
+      biped::Names());
 }
 
 void Walker::Command(const biped::GaitCommand& command) {
@@ -113,6 +122,10 @@ void Walker::Push(double impulse_ns, double direction_rad, std::uint64_t number)
   inputs_.push_number = number;
   inputs_.push_impulse_W_ns =
       impulse_ns * Eigen::Vector2d(std::cos(direction_rad), std::sin(direction_rad));
+}
+
+void Walker::Tow(double force_n, double direction_rad) {
+  inputs_.tow_W_n = force_n * Eigen::Vector2d(std::cos(direction_rad), std::sin(direction_rad));
 }
 
 const engine::EngineOutput& Walker::Advance() {
@@ -132,12 +145,11 @@ constexpr double kPitUprightS = 2;
 constexpr double kSteeringRadPerM = 0.1;
 constexpr double kHeadingLimitRad = 0.1;
 constexpr double kTurnLimitRad = 0.02;
-
-double Steer(const engine::EngineOutput& output) {
-  const double wanted_rad =
-      std::clamp(-kSteeringRadPerM * output.p_WC_m.y(), -kHeadingLimitRad, kHeadingLimitRad);
-  return std::clamp(wanted_rad - output.gait.heading_rad, -kTurnLimitRad, kTurnLimitRad);
-}
+/// In curves a step goes along the track's heading where its middle will be: so far ahead.
+constexpr double kSteeringLeadS = 0.3;
+constexpr double kCurveTurnLimitRad = DegreesToRadians(biped::kTurnPerStepMaxDeg);
+constexpr double kCurveSegmentDeg = 5;
+constexpr double kQuarterDeg = 90;
 
 }  // namespace
 
@@ -157,12 +169,60 @@ PitCourse MakePitCourse(double width_m, double length_m, Random& random) {
   return course;
 }
 
+PitCourse MakeCurvedPitCourse(double width_m, double length_m, double radius_m, Random& random) {
+  const double piece_m = radius_m * DegreesToRadians(kCurveSegmentDeg);
+  const double first_m = random.Uniform(kRunUpMinM, kRunUpMaxM);
+  nlohmann::json segments = nlohmann::json::array({{{"length_m", first_m}}});
+  double side = random.Uniform(0, 1) < 0.5 ? 1 : -1, turned_deg = 0;
+  PitCourse course;
+  for (double along_m = first_m; along_m < length_m;) {
+    const double pit_m = along_m + random.Uniform(kRunUpMinM, kRunUpMaxM);
+    while (along_m < pit_m) {
+      if (turned_deg >= kQuarterDeg) {
+        side = -side;
+        turned_deg = 0;
+      }
+      const double piece = std::min(1.0, (pit_m - along_m) / piece_m);
+      const double least_m = 0.01;
+      const double piece_length_m = std::max(least_m, piece * piece_m);
+      segments.push_back(
+          {{"length_m", piece_length_m}, {"curve_deg", side * piece * kCurveSegmentDeg}});
+      along_m += piece_length_m;
+      turned_deg += piece * kCurveSegmentDeg;
+    }
+    segments.push_back({{"length_m", width_m}, {"pit", true}});
+    course.pits.push_back({along_m, along_m + width_m});
+    along_m += width_m;
+  }
+  segments.push_back({{"length_m", kBehindPitM}});
+  course.track = nlohmann::json{{"version", 1}, {"name", "pits"}, {"segments", segments}}.dump();
+  course.curves = std::move(terrain::ParseTrack(course.track, "the course")).value();
+  return course;
+}
+
+double PitPilot::Steer(const engine::EngineOutput& output, const terrain::TrackPlace& place) const {
+  const bool curves = !course_.curves.segments.empty();
+  const double aside_m =
+      curves ? std::copysign(place.distance_m, place.sideways_m) : output.p_WC_m.y();
+  const double lead_m = kSteeringLeadS * command_.speed_mps;
+  const double ahead_rad =
+      curves ? terrain::CentreAhead(course_.curves, place, lead_m).heading_rad : 0;
+  const double towards_rad =
+      std::clamp(-kSteeringRadPerM * aside_m, -kHeadingLimitRad, kHeadingLimitRad);
+  const double limit_rad = curves ? kCurveTurnLimitRad : kTurnLimitRad;
+  return std::clamp(WrapAngle(ahead_rad + towards_rad - output.gait.heading_rad), -limit_rad,
+                    limit_rad);
+}
+
 biped::GaitCommand PitPilot::Command(const engine::EngineOutput& output) {
   biped::GaitCommand command = command_;
-  command.turn_per_step_rad = Steer(output);
+  const bool curves = !course_.curves.segments.empty();
+  const terrain::TrackPlace place =
+      curves ? terrain::Locate(course_.curves, output.p_WC_m.head<2>()) : terrain::TrackPlace{};
+  command.turn_per_step_rad = Steer(output, place);
   if (next_ == course_.pits.size()) return command;
   const Pit& pit = course_.pits[next_];
-  const double x_m = output.p_WC_m.x();
+  const double x_m = curves ? terrain::LengthTo(course_.curves, place) : output.p_WC_m.x();
   over_ = over_ || x_m > pit.near_m;
   if (passed_s_ < 0 && x_m > pit.far_m) passed_s_ = output.time_s;
   if (command_.gait == stream::Gait::kRun && passed_s_ < 0) {
@@ -290,7 +350,7 @@ double LargestSurvived(Cycle& cycle, int directions, double survived_ns, double 
 int PushSweepResult::all_falls() const { return std::accumulate(falls.begin(), falls.end(), 0); }
 
 Result<void> RunPushSweep(const PushSweep& sweep, std::uint64_t seed, PushSweepResult& result) {
-  Result<engine::GaitEngine> engine = NewEngine();
+  Result<engine::GaitEngine> engine = NewEngine(sweep.surface);
   if (!engine) return engine.error();
   Random random(seed);
   Cycle cycle(*engine, sweep.command);

@@ -9,6 +9,8 @@
 
 #include "common/base/result.h"
 #include "daemon/offline/pose_run/pose_run.h"
+#include "daemon/simulation/biped/ground.h"
+#include "daemon/simulation/biped/track.h"
 #include "daemon/simulation/biped/world.h"
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
@@ -41,14 +43,17 @@ void UseGaits(const std::string& gaits);
 void ReadGainsToo(std::vector<std::string> paths);
 
 /// An engine on the straight track, from the product's data files.
-Result<engine::GaitEngine> NewEngine();
+Result<engine::GaitEngine> NewEngine(const terrain::Surface& surface = {});
+/// The same on a track given as text.
+Result<engine::GaitEngine> NewEngineOn(const std::string& track, const terrain::Surface& surface);
 /// An engine on a track given as text, for a user interface with the mapping table of this path;
 /// empty: the built-in one.
 Result<engine::GaitEngine> NewEngineOn(const std::string& track,
                                        const mapping::InterfaceOptions& interface = {},
                                        const std::string& mapping_table = "");
 /// The world of NewEngine's engine alone, or of one on a track; its feet are not listed as pairs.
-Result<physics::World> NewWorld(const std::optional<std::string>& track = std::nullopt);
+Result<physics::World> NewWorld(const std::optional<std::string>& track = std::nullopt,
+                                const terrain::Surface& surface = {});
 
 /// An engine driven by direct commands, with what one wants to know of it.
 class Walker {
@@ -60,6 +65,8 @@ class Walker {
   /// needs a number that its state has not seen.
   void Push(double impulse_ns, double direction_rad);
   void Push(double impulse_ns, double direction_rad, std::uint64_t number);
+  /// A force on the body that goes on; none to begin with.
+  void Tow(double force_n, double direction_rad);
   /// One step; reads the output every step.
   const engine::EngineOutput& Advance();
   bool fell() const { return output_ != nullptr && output_->gait.falls > 0; }
@@ -74,9 +81,9 @@ class Walker {
   double leg_gap_min_m_ = INFINITY;
 };
 
-/// Pits to jump over: a straight track with pits at random places, and the pilot who commands.
+/// Pits to jump over: a track with pits at random places, and the pilot who commands.
 struct Pit {
-  double near_m;  ///< Edges, along x.
+  double near_m;  ///< Edges, along the track.
   double far_m;
 };
 
@@ -84,12 +91,16 @@ struct Pit {
 struct PitCourse {
   std::string track;  ///< Text for GaitEngine::Create.
   std::vector<Pit> pits;
+  stream::Track curves;  ///< The same track, where it is not straight; else without segments.
 };
 
 /// Pits of one width after run-ups of 16 to 20 m, which is what a run of 3 m/s needs to be one
 /// again after a jump, for as long as `length_m`; then level ground. Which step comes before an
 /// edge is thus random.
 PitCourse MakePitCourse(double width_m, double length_m, Random& random);
+/// The same along curves of this radius after the first run-up, a quarter of a circle to the one
+/// side and a quarter to the other, in segments of 5 degrees. A pit may be anywhere in them.
+PitCourse MakeCurvedPitCourse(double width_m, double length_m, double radius_m, Random& random);
 
 /// Commands a gait along a course. A run is commanded to jump when the edge is `lead_s` away, and
 /// to run again once it has landed behind the pit; other gaits get one command all along. All are
@@ -109,6 +120,9 @@ class PitPilot {
   int met(bool fell) const { return crossed_ + (fell && over_ ? 1 : 0); }
 
  private:
+  /// Turn of the next step towards the middle of the track.
+  double Steer(const engine::EngineOutput& output, const terrain::TrackPlace& place) const;
+
   const PitCourse& course_;
   biped::GaitCommand command_;
   double height_m_;
@@ -130,6 +144,7 @@ struct PushSweep {
   int directions = 8;
   int phases = 12;
   double impulse_ns = 16;  ///< Over 0.1 s.
+  terrain::Surface surface = {};
 };
 
 /// Falls by direction and size of a push.

@@ -32,6 +32,7 @@ BodyState Read(const BipedParameters& parameters, const physics::Observation& ob
   state.R_WB = observation.R_WB;
   state.p_WC = observation.p_WC;
   state.v_WC = observation.v_WC;
+  state.contact_force_W_n = observation.contact_force_W_n;
   for (std::size_t i = 0; i < state.legs.size(); ++i) {
     LegState& leg = state.legs[i];
     for (std::size_t j = 0; j < 4; ++j) {

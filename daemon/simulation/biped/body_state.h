@@ -41,6 +41,7 @@ struct BodyState {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WC = Eigen::Vector3d::Zero();
+  Eigen::Vector3d contact_force_W_n = Eigen::Vector3d::Zero();  ///< In the last step.
   std::array<LegState, 2> legs;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -78,6 +79,15 @@ Result<BipedParameters> ParseBiped(const std::string& text, const std::string& o
   return parameters;
 }
 
+BipedParameters On(BipedParameters parameters, const terrain::Surface& surface) {
+  if (surface.friction > 0) {
+    parameters.torsional_friction_m *= surface.friction / parameters.sliding_friction;
+    parameters.sliding_friction = surface.friction;
+  }
+  parameters.foot_sinks_m = surface.sinks_m;
+  return parameters;
+}
+
 namespace {
 
 using text::Shortest;
@@ -120,6 +130,28 @@ std::string Leg(const BipedParameters& p, int leg) {
 
 constexpr const char* kSolref = "0.006 1";
 constexpr const char* kRolling = "0.0001";  // Rolling friction, m; of no effect with condim 4.
+/// Impedance d of soft ground, at any depth, and that of MuJoCo's hard one.
+constexpr double kSoftImpedance = 0.5, kHardImpedance = 0.95;
+
+/// Contact of a foot as attributes. At rest a constraint of impedance d and time constant T lets a
+/// mass m under the force F sink by (1 - d) T^2 F / m: a spring, which the foot's own mass damps
+/// critically. T follows from the wanted depth.
+std::string FootContact(const BipedParameters& p) {
+  if (p.foot_sinks_m <= 0) return std::string("solref='") + kSolref + "'";
+  const double weight_n = p.mass_kg() * kStandardGravityMps2;
+  const double time_s =
+      std::sqrt(p.foot_sinks_m * p.link_mass_kg / ((1 - kSoftImpedance) * weight_n));
+  const std::string d = Shortest(kSoftImpedance);
+  return "solref='" + Shortest(time_s) + " 1' solimp='" + d + " " + d + " 0.001'";
+}
+
+/// Only its normal yields: along the soft ground a foot holds as stiffly as on hard ground. The
+/// option is the ratio of both regularisations (1 - d) / d.
+std::string FrictionImpedance(const BipedParameters& p) {
+  if (p.foot_sinks_m <= 0) return "";
+  const auto yields = [](double d) { return (1 - d) / d; };
+  return " impratio='" + Shortest(yields(kSoftImpedance) / yields(kHardImpedance)) + "'";
+}
 
 /// Each foot with each geom of the ground, by the same numbers that the geoms have: a foot's come
 /// first by its priority.
@@ -128,8 +160,8 @@ std::string FootPairs(const BipedParameters& p, const std::vector<std::string>& 
   std::string pairs;
   for (const char* foot : {"left_foot", "right_foot"}) {
     for (const std::string& name : ground_names) {
-      pairs += "<pair geom1='" + name + "' geom2='" + foot + "' condim='4' solref='" + kSolref +
-               "' friction='" + slides + " " + slides + " " + turns + " " + kRolling + " " +
+      pairs += "<pair geom1='" + name + "' geom2='" + foot + "' condim='4' " + FootContact(p) +
+               " friction='" + slides + " " + slides + " " + turns + " " + kRolling + " " +
                kRolling + "'/>\n";
     }
   }
@@ -144,15 +176,15 @@ std::string WriteMjcf(const BipedParameters& p, const std::string& ground,
   return "<mujoco>\n<compiler angle='radian' inertiafromgeom='false'/>\n"
          "<option timestep='" +
          Shortest(step_s) + "' integrator='Euler' cone='elliptic' gravity='0 0 " +
-         Shortest(-kStandardGravityMps2) +
-         "' iterations='50'/>\n"
+         Shortest(-kStandardGravityMps2) + "' iterations='50'" + FrictionImpedance(p) +
+         "/>\n"
          "<default>\n<geom solref='" +
          kSolref +
          "'/>\n"
          "<default class='shell'><geom contype='2' conaffinity='1'/></default>\n"
-         "<default class='foot'><geom contype='2' conaffinity='1' priority='1' condim='4' "
-         "friction='" +
-         Shortest(p.sliding_friction) + " " + Shortest(p.torsional_friction_m) + " " + kRolling +
+         "<default class='foot'><geom contype='2' conaffinity='1' priority='1' condim='4' " +
+         FootContact(p) + " friction='" + Shortest(p.sliding_friction) + " " +
+         Shortest(p.torsional_friction_m) + " " + kRolling +
          "'/></default>\n</default>\n<worldbody>\n" + ground +
          "<body name='body' pos='0 0 1'>\n<freejoint/>\n" +
          Inertial(0, p.body_mass_kg, p.body_inertia_roll_kgm2, p.body_inertia_pitch_kgm2,

@@ -5,6 +5,7 @@
 
 #include "common/base/result.h"
 #include "common/stream/character.h"
+#include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/biped/world.h"
 
 /// The biped of Shiratori & Hodgins 2008, Figure 4: a body, two hips of three hinges, two
@@ -33,6 +34,7 @@ struct BipedParameters {
   double sliding_friction = 0;
   double torsional_friction_m = 0;
   double hip_armature_kgm2 = 0;  ///< The hip drives' rotors.
+  double foot_sinks_m = 0;       ///< One foot under the whole weight; not in the file, see On.
 
   double mass_kg() const { return body_mass_kg + 4 * link_mass_kg; }
 };
@@ -40,8 +42,12 @@ struct BipedParameters {
 /// Reads biped.json: every field above, nothing unknown, all in range. `origin` names the file.
 Result<BipedParameters> ParseBiped(const std::string& text, const std::string& origin);
 
+/// The biped with its feet on a ground like that: both frictions change in proportion.
+BipedParameters On(BipedParameters parameters, const terrain::Surface& surface);
+
 /// The whole world as MJCF text: options, `ground` (geoms of the world body), the biped.
-/// Contact: the feet's friction holds whatever ground they touch; solref 6 ms, critically damped.
+/// Contact: the feet's friction holds whatever ground they touch; solref 6 ms, critically damped,
+/// or as slow as lets a foot sink.
 /// The feet and the geoms of `ground_names` are also listed as pairs (Clearance in world.h).
 /// `more`: further sections at the end.
 std::string WriteMjcf(const BipedParameters& parameters, const std::string& ground,

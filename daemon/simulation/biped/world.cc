@@ -313,8 +313,10 @@ void ReadContacts(const mjModel& model, mjData& state, const std::array<int, kLe
     const mjContact& contact = state.contact[i];
     mjtNum force[6];  // Contact frame: its first axis is the normal, from geom1 to geom2.
     mj_contactForce(&model, &state, i, force);
+    // The force on geom2; MuJoCo puts a plane first, but a box behind the foot.
+    const double sign = model.geom_bodyid[contact.geom1] == 0 ? 1 : -1;
     for (int axis = 0; axis < 3; ++axis) {
-      observation.contact_force_W_n += force[axis] * Vector(contact.frame + 3 * axis);
+      observation.contact_force_W_n += sign * force[axis] * Vector(contact.frame + 3 * axis);
     }
     bool foot = false;
     for (int leg = 0; leg < kLegs; ++leg) {

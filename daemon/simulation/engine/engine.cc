@@ -46,6 +46,7 @@ Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& 
   }
   Result<biped::BipedParameters> biped = biped::ParseBiped(texts.biped, kBipedFile);
   if (!biped) return biped.error();
+  biped = biped::On(*biped, config.surface);
   Result<mapping::AnyInterface> interface =
       mapping::AnyInterface::Create(config.interface, texts.mapping);
   if (!interface) return interface.error();
@@ -101,8 +102,8 @@ Result<std::string> ExportMjcf(const EngineTexts& texts, const EngineConfig& con
          "     Each step: the efforts of the eight joints in ctrl, N m and N; a push on the body "
          "in\n"
          "     xfrc_applied of \"body\", N; then mj_step(model, data). -->\n" +
-         biped::WriteMjcf(*biped, ground.mjcf, ground.names, config.step_s,
-                          biped::MotorsMjcf() + start);
+         biped::WriteMjcf(biped::On(*biped, config.surface), ground.mjcf, ground.names,
+                          config.step_s, biped::MotorsMjcf() + start);
 }
 
 void GaitEngine::Advance(const EngineInputs& inputs) {
@@ -114,6 +115,7 @@ void GaitEngine::Advance(const EngineInputs& inputs) {
   p.TakeFeatures(inputs);
   p.TakeInterface(inputs);
   p.TakePush(inputs);
+  p.TakeTow(inputs);
   p.Command(inputs);
   p.TakeTrial(inputs);
   p.TakePutBack(inputs);

@@ -12,6 +12,7 @@
 #include "common/base/result.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/body_state.h"
+#include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/biped/track.h"
 #include "daemon/simulation/biped/world.h"
 #include "daemon/simulation/gait/gain_table.h"
@@ -57,6 +58,7 @@ struct EngineConfig {
   double put_back_distance_m = 3;   ///< Along the track's centre line, backwards.
   double features_timeout_s = 0.5;  ///< Without new features: stepping in place.
   mapping::InterfaceOptions interface = {};
+  terrain::Surface surface = {};  ///< Of all tracks.
 };
 
 inline constexpr int kMaxAppends = 16;
@@ -87,6 +89,7 @@ struct EngineInputs {
   biped::GaitCommand direct_command;
   std::uint64_t push_number = 0;
   Eigen::Vector2d push_impulse_W_ns = Eigen::Vector2d::Zero();  ///< On the body's COM, over 0.1 s.
+  Eigen::Vector2d tow_W_n = Eigen::Vector2d::Zero();            ///< Held force on the body's COM.
   std::uint64_t put_back_number = 0;
   /// Segments to add to the track's end: the newest append_count ones of append_number in all,
   /// oldest first. One is taken a step; keep each here until EngineOutput::append_number says so.
@@ -156,7 +159,7 @@ struct EngineOutput {
   Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();
   /// Generalised forces of this step: yaw, roll, pitch (N m) and length (N) of the left leg, then
-  /// of the right one; and the push on the body.
+  /// of the right one; and push and tow on the body.
   std::array<double, 8> joint_efforts{};
   Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
   stream::GaitState gait;

@@ -109,7 +109,7 @@ bool StepAhead(const Stage& stage, const ChosenGains& chosen, Outlook& ahead) {
   const gait::Gains& gains = stage.gains.At(stage.tables, chosen, ahead.gait);
   stage.twin.Step(
       gait::Advance(body, stage.biped, gains, stage.command, stage.sight, stage.step_s, ahead.gait),
-      Eigen::Vector3d::Zero());
+      stage.tow_W_n);
   ++ahead.step;
   if (ahead.step % kLooksEvery != 0) return true;
   const biped::BodyState now =

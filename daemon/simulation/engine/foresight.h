@@ -78,6 +78,7 @@ struct Stage {
   const stream::Track& track;
   const stream::Track* sight;  ///< As gait::Context's seen_ground.
   const biped::GaitCommand& command;
+  const Eigen::Vector3d& tow_W_n;  ///< That goes on.
   double step_s;
   physics::World& twin;  ///< Left where the last rollout ended.
   GainsInForce& gains;

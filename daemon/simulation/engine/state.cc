@@ -51,6 +51,7 @@ namespace {
 
 constexpr double kPushDurationS = 0.1;
 constexpr double kLargestPushNs = 1000;
+constexpr double kLargestTowN = 1000;
 
 }  // namespace
 
@@ -139,6 +140,12 @@ void GaitEngine::Parts::TakePush(const EngineInputs& inputs) {
   taken.push_W_n << impulse_ns / duration_s, 0;
 }
 
+void GaitEngine::Parts::TakeTow(const EngineInputs& inputs) {
+  const Eigen::Vector2d& tow_n = inputs.tow_W_n;
+  const bool taken = tow_n.allFinite() && tow_n.norm() <= kLargestTowN;
+  state.inputs.tow_W_n << (taken ? tow_n : Eigen::Vector2d::Zero()), 0;
+}
+
 void GaitEngine::Parts::Command(const EngineInputs& inputs) {
   const stream::Gait before = state.command.gait;
   mapping::Inputs person = state.inputs.fed ? inputs.features : mapping::Inputs{};
@@ -162,10 +169,10 @@ void GaitEngine::Parts::StepWorld() {
     output.joint_efforts =
         gait::Advance(body, biped, now, state.command, Sight(), config.step_s, state.gait);
   }
-  output.push_W_n.setZero();
+  output.push_W_n = state.inputs.tow_W_n;
   if (state.inputs.push_steps_left > 0) {
     --state.inputs.push_steps_left;
-    output.push_W_n = state.inputs.push_W_n;
+    output.push_W_n += state.inputs.push_W_n;
   }
   const Eigen::Vector3d p_WC = body.p_WC;
   on.world.Step(output.joint_efforts, output.push_W_n);
@@ -204,6 +211,7 @@ void GaitEngine::Parts::LookAhead(int phase_before, bool push_ended) {
                                                               .track = on.track,
                                                               .sight = Sight(),
                                                               .command = state.command,
+                                                              .tow_W_n = state.inputs.tow_W_n,
                                                               .step_s = config.step_s,
                                                               .twin = on.twin,
                                                               .gains = gains_ahead});

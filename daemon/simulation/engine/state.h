@@ -30,6 +30,7 @@ struct InputMemory {
   bool fed = false;            ///< New features arrived within the timeout.
   Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
   int push_steps_left = 0;
+  Eigen::Vector3d tow_W_n = Eigen::Vector3d::Zero();
 };
 
 /// From a command to its controller.
@@ -127,6 +128,7 @@ struct GaitEngine::Parts {
   void TakeFeatures(const EngineInputs& inputs);
   void TakeInterface(const EngineInputs& inputs);
   void TakePush(const EngineInputs& inputs);
+  void TakeTow(const EngineInputs& inputs);
   void Command(const EngineInputs& inputs);
   /// Puts the character back when the inputs ask for it, or some time after a failure.
   void TakePutBack(const EngineInputs& inputs);

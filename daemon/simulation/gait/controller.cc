@@ -10,6 +10,7 @@
 #include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/paper.h"
+#include "daemon/simulation/gait/rough.h"
 #include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/gait/style.h"
 #include "daemon/simulation/gait/targets.h"
@@ -47,6 +48,7 @@ physics::JointEfforts Advance(const biped::BodyState& body, const biped::BipedPa
   if (gains.paper.laws > 0.5) {
     return Servo(AdvancePaper(context, memory), body, biped, gains, step_s, memory);
   }
+  FeelTow(context, memory);
   Targets targets = AdvanceMachines(
       {AdvanceWalking, AdvanceRunning, WalkingTargets, RunningTargets}, context, memory);
   targets.lean_rad += AnticipatedLean(context, memory);
@@ -518,9 +520,9 @@ constexpr double kFullClearanceUntil = 0.85;
 double SupportLength(const Context& context, const GaitMemory& memory, int leg) {
   const WalkingGains& gains = context.gains.walking;
   const biped::LegState& state = context.body.legs[leg];
-  const double height_m = gains.hip_height_m - AnticipatedCrouch(context, memory) +
-                          HipRise(context, memory) + memory.walking_step.support_height_m -
-                          state.p_WF.z();
+  const double height_m = gains.hip_height_m - AnticipatedCrouch(context, memory) -
+                          TowCrouch(context, memory) + HipRise(context, memory) +
+                          memory.walking_step.support_height_m - state.p_WF.z();
   return std::clamp(height_m / std::max(0.5, -state.u_HF_W.z()), gains.leg_length_min_m,
                     gains.leg_length_max_m);
 }

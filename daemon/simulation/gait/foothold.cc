@@ -6,6 +6,7 @@
 #include "common/base/units.h"
 #include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/gait/controller.h"
+#include "daemon/simulation/gait/rough.h"
 #include "daemon/simulation/gait/targets.h"
 #include "daemon/simulation/gait/transition.h"
 
@@ -35,8 +36,9 @@ Pendulum SupportPendulum(const Context& context, const GaitMemory& memory) {
   const double rate = std::sqrt(kStandardGravityMps2 / std::clamp(r_FC_W.z(), 0.6, 1.1));
   // Half the double support still passes before the new foot carries.
   const double growth = std::exp(rate * 0.5 * context.gains.walking.double_support_time_s);
+  const Vector3d r_balance_W = r_FC_W + TowOffset(memory, kStandardGravityMps2 / (rate * rate));
   const Vector3d capture_H =
-      ToHeading(memory.heading_rad, r_FC_W) + ToHeading(memory.heading_rad, body.v_WC) / rate;
+      ToHeading(memory.heading_rad, r_balance_W) + ToHeading(memory.heading_rad, body.v_WC) / rate;
   return {rate, growth * capture_H};
 }
 
@@ -134,8 +136,11 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
                                        : gains.run_foot_spacing_m;
   double aside_m = v_H.y() * memory.hop.support_time_s / 2 + side_gain_s * v_H.y();
   if (jumping) aside_m *= SpreadShare(context.gains.recovery, v_H.y(), leg);
+  const Vector3d tow_H =
+      ToHeading(memory.heading_rad, TowOffset(memory, memory.pit.last_hop.touchdown_height_m));
+  ahead_m += tow_H.x();
   const double left_m =
-      aside_m + biped::Side(leg) * spacing_m + TurningOffset(context, memory, v_H.x());
+      aside_m + biped::Side(leg) * spacing_m + TurningOffset(context, memory, v_H.x()) + tow_H.y();
   return ToWorld(
       memory.heading_rad,
       {std::clamp(ahead_m, -gains.foothold_limit_m, gains.foothold_limit_m),

@@ -184,6 +184,15 @@ constexpr std::array kFields{
     GAIN(fade, aside_mps, "m/s", 0, 10),
     GAIN(fade, tilt_rad, "rad", 0, 1),
 
+    GAIN(grip, friction, "1", 0, 5),
+    GAIN(grip, walk_share, "1", 0.1, 1),
+    GAIN(grip, run_share, "1", 0.1, 2),
+
+    GAIN(tow, slack_n, "N", 1, 1000),
+    GAIN(tow, ahead_share, "1", 0, 1),
+    GAIN(tow, reach_m, "m", 0, 1),
+    GAIN(tow, crouch_m, "m", 0, 1),
+
     GAIN(paper, laws, "1", 0, 1),
     GAIN(paper, touchdown_length_m, "m", 0.6, 1.1),
     GAIN(paper, swing_length_m, "m", 0.55, 1.1),

@@ -215,6 +215,22 @@ struct FadeGains {
   double tilt_rad = 0.15;        ///< None beyond this tilt of the body.
 };
 
+/// On ground that holds a foot badly.
+struct GripGains {
+  double friction = 0.7;  ///< Ground of less sliding friction is slippery: without style, ...
+  double walk_share =
+      0.75;                ///< ... legs slanting by at most this part of its friction, walking ...
+  double run_share = 0.9;  ///< ... and hopping, at touchdown, ...
+};
+
+/// Against a force that goes on (rough.h).
+struct TowGains {
+  double slack_n = 6;        ///< Up to this nothing is done, from twice of it on all.
+  double ahead_share = 0.2;  ///< Forwards, of the weight, at most: a foot further ahead stops all.
+  double reach_m = 0.45;     ///< v_d is such that no foot is further from the COM at touchdown.
+  double crouch_m = 0.4;     ///< The hips of a walk go down by this part of tow over weight, m.
+};
+
 /// The gaits as the paper prints them (paper.h). Nothing here acts while `laws` is 0.
 struct PaperGains {
   double laws = 0;  ///< 1: the paper's machines and laws in place of ours.
@@ -262,6 +278,8 @@ struct Gains {
   AnticipationGains anticipation;
   StyleGains style;
   FadeGains fade;
+  GripGains grip;
+  TowGains tow;
   PaperGains paper;
   PaperHopGains paper_hop;
 };

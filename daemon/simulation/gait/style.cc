@@ -8,6 +8,7 @@
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/rough.h"
 #include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/gait/targets.h"
 
@@ -84,6 +85,7 @@ bool IsRegular(const Context& context, const GaitMemory& memory) {
 
 double RegularShare(const Context& context, const GaitMemory& memory) {
   if (ChangesGait(context, memory) || memory.pit.sighting.ahead) return 0;
+  if (IsSlippery(context) || !memory.tow.offset_W.isZero(0)) return 0;
   if (!IsRegular(context, memory) || !IsLevelGround(context, memory)) return 0;
   const FadeGains& gains = context.gains.fade;
   const double turn_rad = std::fabs(context.goal.turn_per_step_rad);

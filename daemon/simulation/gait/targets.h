@@ -180,6 +180,25 @@ struct StyleMemory {
   stream::Gait gait = stream::Gait::kUnspecified;  ///< That `share` is for.
 };
 
+/// Forces that a median is taken of.
+inline constexpr std::size_t kTowForces = 25;
+
+/// The level force that acts on the body besides gravity and contact (rough.h).
+struct TowMemory {
+  std::array<Eigen::Vector2d, kTowForces> forces_W_n = Zeros();
+  std::size_t next = 0;                                     ///< The oldest one.
+  int steps = 0;                                            ///< Of the mean that is being made.
+  Eigen::Vector2d momentum_W_ns = Eigen::Vector2d::Zero();  ///< When it began, ...
+  Eigen::Vector2d contact_W_ns = Eigen::Vector2d::Zero();   ///< ... and the ground's impulse since.
+  Eigen::Vector3d offset_W = Eigen::Vector3d::Zero();       ///< What counts of it, over the weight.
+
+  static std::array<Eigen::Vector2d, kTowForces> Zeros() {
+    std::array<Eigen::Vector2d, kTowForces> zeros;
+    zeros.fill(Eigen::Vector2d::Zero());
+    return zeros;
+  }
+};
+
 /// All that the controllers remember between steps: a plain value.
 struct GaitMemory {
   stream::Gait gait = stream::Gait::kStep;
@@ -202,6 +221,7 @@ struct GaitMemory {
   PitMemory pit;
   GroundMemory ground;
   StyleMemory style;
+  TowMemory tow;
   ServoMemory servo;
 };
 

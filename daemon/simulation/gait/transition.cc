@@ -8,6 +8,7 @@
 #include "daemon/simulation/biped/ground.h"
 #include "daemon/simulation/gait/controller.h"
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/rough.h"
 #include "daemon/simulation/gait/targets.h"
 
 namespace footing::gait {
@@ -320,19 +321,21 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
     target_mps = std::max(target_mps, held_mps);
   }
   if (to_ground && !flying) target_mps = std::min(target_mps, SpeedBeforePit(context, memory));
+  target_mps = std::min(target_mps, SlantSpeed(context, memory));
   memory.speed.target_mps = target_mps;
   // Slowing down starts from the speed there is, not from one that was not reached yet.
   if (in_flight) {
     const double reached_mps = std::max(target_mps, speed_mps);
     memory.speed.desired_mps = std::min(memory.speed.desired_mps, reached_mps);
   }
+  const double pace = GripPace(context);
   const double faster =
       (flying ? context.gains.hopping.acceleration_mps2 : context.gains.walking.acceleration_mps2) *
-      context.step_s;
+      pace * context.step_s;
   const bool brakes = flying && memory.speed.desired_mps > 0;
   const double braking_mps2 =
       LeavesRun(context, memory) ? limits.leaving_run_mps2 : context.gains.hopping.braking_mps2;
-  const double slower = brakes ? braking_mps2 * context.step_s : faster;
+  const double slower = brakes ? braking_mps2 * pace * context.step_s : faster;
   memory.speed.desired_mps += std::clamp(target_mps - memory.speed.desired_mps, -slower, faster);
 }
 
