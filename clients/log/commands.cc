@@ -103,7 +103,7 @@ std::optional<BodyFormat> BodyFormatOf(const std::string& format) {
   return std::nullopt;
 }
 
-/// What an export does besides its format.
+/// The options of an export besides its format.
 struct ExportOptions {
   BidsOptions bids;
   std::string skeleton;
@@ -111,7 +111,7 @@ struct ExportOptions {
   std::optional<int> lag_ms;
 };
 
-/// Of the poses of a body that was exported, where it has no other lag.
+/// Lag of the poses of an exported body, ms, where no other one is named.
 constexpr int kExportLagMs = 200;
 
 Result<ordered_json> RunBodies(const std::string& file, const std::string& format, BodyFormat body,

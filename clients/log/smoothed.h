@@ -16,7 +16,7 @@ class SmoothedCopy {
   /// `folder`, which is made.
   SmoothedCopy(const std::string& recording, int lag_ms, const std::string& folder);
 
-  /// Of the copy, or of the recording itself.
+  /// Path of the copy, or of the recording itself.
   const std::string& path() const { return path_; }
   /// Why there is no copy although there should be one, for a person; otherwise empty.
   const std::string& why_live() const { return why_live_; }

@@ -166,7 +166,7 @@ class TrialScore {
   SmoothnessScore smoothness_;
   FootScore feet_;
   PoseBreakdown breakdown_;
-  Nees nees_;  ///< Of the positions of all joints.
+  Nees nees_;  ///< Positions of all joints.
   struct Group {
     std::vector<int> joints;
     Nees nees;

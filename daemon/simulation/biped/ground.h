@@ -13,7 +13,7 @@
 
 namespace footing::terrain {
 
-/// What the ground is like for a foot, the same all over a world.
+/// Properties of the ground for a foot, the same all over a world.
 struct Surface {
   double friction = 0;  ///< Sliding friction; 0: the biped's own.
   double sinks_m = 0;   ///< How far one foot sinks under the whole weight; 0: hard ground.

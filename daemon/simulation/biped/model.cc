@@ -135,12 +135,14 @@ constexpr double kSoftImpedance = 0.5, kHardImpedance = 0.95;
 
 /// Contact of a foot as attributes. At rest a constraint of impedance d and time constant T lets a
 /// mass m under the force F sink by (1 - d) T^2 F / m: a spring, which the foot's own mass damps
-/// critically. T follows from the wanted depth.
+/// critically. T follows from the wanted depth. With the leg that the foot hangs on, a stepping
+/// biped's foot has 1.4 times the mass of its link.
 std::string FootContact(const BipedParameters& p) {
   if (p.foot_sinks_m <= 0) return std::string("solref='") + kSolref + "'";
   const double weight_n = p.mass_kg() * kStandardGravityMps2;
-  const double time_s =
-      std::sqrt(p.foot_sinks_m * p.link_mass_kg / ((1 - kSoftImpedance) * weight_n));
+  constexpr double kFootLinks = 1.4;
+  const double foot_kg = kFootLinks * p.link_mass_kg;
+  const double time_s = std::sqrt(p.foot_sinks_m * foot_kg / ((1 - kSoftImpedance) * weight_n));
   const std::string d = Shortest(kSoftImpedance);
   return "solref='" + Shortest(time_s) + " 1' solimp='" + d + " " + d + " 0.001'";
 }

@@ -58,7 +58,7 @@ struct EngineConfig {
   double put_back_distance_m = 3;   ///< Along the track's centre line, backwards.
   double features_timeout_s = 0.5;  ///< Without new features: stepping in place.
   mapping::InterfaceOptions interface = {};
-  terrain::Surface surface = {};  ///< Of all tracks.
+  terrain::Surface surface = {};  ///< The ground of all tracks.
 };
 
 inline constexpr int kMaxAppends = 16;

@@ -53,7 +53,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Each force is the mean over so long.
+/// Interval of which each force is the mean, s.
 constexpr double kFeltEveryS = 0.01;
 
 /// The middle one of the last forces, axis by axis.

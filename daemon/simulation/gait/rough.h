@@ -3,7 +3,7 @@
 #include "daemon/simulation/gait/controller.h"
 #include "daemon/simulation/gait/targets.h"
 
-/// What the gaits do on slippery ground and against a tow: docs/gait.md, "Slippery ground and
+/// The gaits on slippery ground and against a tow: docs/gait.md, "Slippery ground and
 /// tows". On ordinary ground, and without a tow, nothing changes.
 namespace footing::gait {
 

@@ -186,11 +186,11 @@ inline constexpr std::size_t kTowForces = 25;
 /// The level force that acts on the body besides gravity and contact (rough.h).
 struct TowMemory {
   std::array<Eigen::Vector2d, kTowForces> forces_W_n = Zeros();
-  std::size_t next = 0;                                     ///< The oldest one.
-  int steps = 0;                                            ///< Of the mean that is being made.
+  std::size_t next = 0;  ///< The oldest one.
+  int steps = 0;         ///< Steps of the mean that is being made.
   Eigen::Vector2d momentum_W_ns = Eigen::Vector2d::Zero();  ///< When it began, ...
   Eigen::Vector2d contact_W_ns = Eigen::Vector2d::Zero();   ///< ... and the ground's impulse since.
-  Eigen::Vector3d offset_W = Eigen::Vector3d::Zero();       ///< What counts of it, over the weight.
+  Eigen::Vector3d offset_W = Eigen::Vector3d::Zero();  ///< The part that counts, over the weight.
 
   static std::array<Eigen::Vector2d, kTowForces> Zeros() {
     std::array<Eigen::Vector2d, kTowForces> zeros;

@@ -138,7 +138,7 @@ class MeasuredTerms {
   /// Where Measure was called last: of a joint's origin, and of the COM. Valid until the next call.
   const JacobianBlock& JointBlock(int joint);
   const JacobianBlock& ComBlock();
-  /// Of the turn of a joint's frame against that of `above`, one of its ancestors (-1: W): the rows
+  /// The turn of a joint's frame against that of `above`, one of its ancestors (-1: W): the rows
   /// of `to_angles` times the angular velocity in W.
   const JacobianBlock& TurnBlock(int joint, int above, const Eigen::Matrix3d& to_angles);
 

@@ -16,7 +16,7 @@ struct Turn {
   Landmark from;  ///< kHips of the pelvis itself: W.
   std::size_t first;
   std::size_t count;
-  std::size_t foot = momentum::kFeet;  ///< Of a leg.
+  std::size_t foot = momentum::kFeet;  ///< Its leg's foot, if it is of a leg.
 };
 
 // In the order of body::kStatedAngles.

@@ -19,8 +19,7 @@ using AngleSd = std::array<double, body::kStatedAngles.size()>;
 
 /// The largest deviation that is stated: that of any direction.
 inline constexpr double kUnknownAngleRad = 1.81;
-inline constexpr double kDeepBendRad =
-    1.2;  ///< Of knees, from which on BestConstants counts fully.
+inline constexpr double kDeepBendRad = 1.2;  ///< Bend of the knees from which on it counts fully.
 
 constexpr AngleSd UnknownAngles() {
   AngleSd sd_rad{};

@@ -51,11 +51,10 @@ std::array<arms::ArmEstimate, kHands> UsableArms(
 }
 
 /// How each leg leans in the T-pose beyond the straight one of the model, W. People stand as wide
-/// as they like, and their feet tell how wide. Their COM is over their COP, ahead of the ankles, so
+/// as they like, and their feet show how wide. Their COM is over their COP, ahead of the ankles, so
 /// the legs lean forwards from there.
-Stance StanceOf(const SubjectModel& model,
-                                                      const momentum::TPose& pose,
-                                                      const Eigen::Vector3d& origin_m) {
+Stance StanceOf(const SubjectModel& model, const momentum::TPose& pose,
+                const Eigen::Vector3d& origin_m) {
   const auto place = [&](int joint) -> const Eigen::Vector3d& {
     return model.t_pose_at.p_WJ[static_cast<std::size_t>(joint)];
   };

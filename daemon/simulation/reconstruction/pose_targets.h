@@ -46,7 +46,7 @@ BodyTurns UsableTurns(const BodyTurns& turns);
 
 /// How each leg leans in the T-pose beyond the straight one of the model, W.
 using Stance = std::array<Eigen::Matrix3d, momentum::kFeet>;
-/// People stand as wide as they like, and their feet tell how wide. Their COM is over their COP,
+/// People stand as wide as they like, and their feet show how wide. Their COM is over their COP,
 /// ahead of the ankles, so the legs lean forwards from there.
 Stance StanceOf(const SubjectModel& model, const momentum::TPose& pose,
                 const Eigen::Vector3d& origin_m);

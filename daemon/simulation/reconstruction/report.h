@@ -75,7 +75,7 @@ struct Output {
   std::vector<Eigen::Matrix3d> R_WJ;
   std::vector<Eigen::Vector3d> p_WJ_m;
   std::vector<double> joint_sd_m;  ///< Standard deviation of each joint's position, along one axis.
-  /// Of the angles of pelvis, trunk and legs; best mode and insoles.
+  /// Standard deviations of angles of pelvis, trunk and legs; best mode and insoles.
   AngleSd angle_sd_rad = UnknownAngles();
 };
 
