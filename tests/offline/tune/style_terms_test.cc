@@ -7,6 +7,7 @@
 #include "common/base/units.h"
 #include "daemon/offline/tune/team.h"
 #include "daemon/offline/tune/trial.h"
+#include "daemon/offline/tune/tune_command.h"
 #include "daemon/simulation/gait_service/config.h"
 
 namespace footing::tune {
