@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -24,6 +23,7 @@
 #include "common/frames/camera_file.h"
 #include "common/net/address.h"
 #include "common/net/discovery.h"
+#include "common/runtime/child.h"
 #include "common/runtime/files.h"
 #include "common/runtime/subject.h"
 #include "common/stream/leg_turn.h"
@@ -160,9 +160,9 @@ Error ShowConfig(const ConfigOptions& options, const Shared& shared) {
         "config connects to no server: it shows the config that one would start with; leave "
         "--connect out");
   }
-  std::error_code error;
-  const auto own = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string program = (own.parent_path() / options.of).string();
+  const auto beside = process::Beside(options.of);
+  if (!beside) return beside.error();
+  const std::string& program = *beside;
   std::vector<std::string> words{program, "--print-config"};
   if (!options.file.empty()) words.insert(words.end(), {"--config", options.file});
   if (options.origin) words.push_back("--origin");

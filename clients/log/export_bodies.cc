@@ -52,13 +52,6 @@ std::string ErrorsCsv() {
 /// A frame that is not valid says nothing about an angle: that of any direction, 360 / sqrt(12).
 constexpr double kUnknownDeg = 103.923;
 
-/// The angle's place in the rows that the engine states; nothing where it states none.
-std::optional<std::size_t> StatedAngle(const std::string& column) {
-  const auto found = std::find(body::kStatedAngles.begin(), body::kStatedAngles.end(), column);
-  if (found == body::kStatedAngles.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - body::kStatedAngles.begin());
-}
-
 /// The standard deviations of the columns of `angles` that are angles, at the same times: in each
 /// frame those that the engine states, otherwise those that were measured.
 motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool>& valid,
@@ -84,7 +77,7 @@ motion::Table DeviationTable(const motion::Table& angles, const std::vector<bool
     const std::vector<double>& stated = stated_deg[static_cast<std::size_t>(row)];
     for (std::size_t i = 1; i < columns.size(); ++i) {
       double& sd_deg = table.values(row, static_cast<Eigen::Index>(i));
-      const auto angle = StatedAngle(table.columns[i]);
+      const auto angle = body::StatedAngle(table.columns[i]);
       if (!valid[static_cast<std::size_t>(row)]) {
         sd_deg = kUnknownDeg;
       } else if (angle && *angle < stated.size()) {

@@ -18,7 +18,7 @@ class SmoothedCopy {
 
   /// Path of the copy, or of the recording itself.
   const std::string& path() const { return path_; }
-  /// Why there is no copy although there should be one, for a person; otherwise empty.
+  /// Reason, for a person, that a copy was asked for and could not be made; otherwise empty.
   const std::string& why_live() const { return why_live_; }
 
  private:

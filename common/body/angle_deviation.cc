@@ -1,5 +1,6 @@
 #include "common/body/angle_deviation.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -84,6 +85,12 @@ std::optional<AngleDeviation> CoordinateDeviation(std::string_view column) {
     if (one.name == column) return one;
   }
   return std::nullopt;
+}
+
+std::optional<std::size_t> StatedAngle(std::string_view column) {
+  const auto found = std::find(kStatedAngles.begin(), kStatedAngles.end(), column);
+  if (found == kStatedAngles.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kStatedAngles.begin());
 }
 
 std::span<const AngleDeviation> LinkDeviations() { return kLinks; }

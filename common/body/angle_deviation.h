@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,5 +45,7 @@ inline constexpr std::array<std::string_view, 16> kStatedAngles = {
     "hip_adduction_r", "hip_rotation_r",   "knee_angle_r",    "ankle_angle_r",
     "hip_flexion_l",   "hip_adduction_l",  "hip_rotation_l",  "knee_angle_l",
     "ankle_angle_l",   "lumbar_extension", "lumbar_bending",  "lumbar_rotation"};
+/// Place of a column among them, such as "hip_flexion_r"; nothing where none is stated.
+std::optional<std::size_t> StatedAngle(std::string_view column);
 
 }  // namespace footing::body

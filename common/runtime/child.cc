@@ -43,15 +43,21 @@ int CodeOf(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + 
 
 }  // namespace
 
-Result<Child> Child::Start(const Options& options) {
+Result<std::string> Beside(const std::string& program) {
   std::error_code error;
   const auto own = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path folder =
-      options.folder.empty() ? own.parent_path() : std::filesystem::path(options.folder);
-  const std::string path = (folder / options.program).string();
-  if (error || ::access(path.c_str(), X_OK) != 0) {
-    return Failure("cannot start " + path + ": " +
-                   (error ? error.message() : std::strerror(errno)) + "; build or install it");
+  if (error) return Failure("cannot start " + program + ": " + error.message());
+  return (own.parent_path() / program).string();
+}
+
+Result<Child> Child::Start(const Options& options) {
+  const auto found = options.folder.empty()
+                         ? Beside(options.program)
+                         : (std::filesystem::path(options.folder) / options.program).string();
+  if (!found) return found.error();
+  const std::string& path = *found;
+  if (::access(path.c_str(), X_OK) != 0) {
+    return Failure("cannot start " + path + ": " + std::strerror(errno) + "; build or install it");
   }
   const pid_t process = ::fork();
   if (process < 0) return Failure(std::string("fork: ") + std::strerror(errno));

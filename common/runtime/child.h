@@ -11,6 +11,9 @@
 
 namespace footing::process {
 
+/// Path of another program, in the folder of this one.
+Result<std::string> Beside(const std::string& program);
+
 /// Another program as a child process that never outlives this one.
 class Child {
  public:

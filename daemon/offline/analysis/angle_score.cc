@@ -147,9 +147,7 @@ void WriteCoordinates(const motion::Table& estimated, const motion::Table& truth
     Coordinate& coordinate = coordinates[*name];
     const auto index = static_cast<Eigen::Index>(column);
     const int true_index = motion::FindColumn(truth, label);
-    const auto angle = static_cast<std::size_t>(
-        std::find(body::kStatedAngles.begin(), body::kStatedAngles.end(), label) -
-        body::kStatedAngles.begin());
+    const auto angle = body::StatedAngle(label);
     for (Eigen::Index row = 0; row < estimated.values.rows(); ++row) {
       ++coordinate.frames;
       if (since_standing && !joint_angles::IsKnown(estimated, label, row)) continue;
@@ -158,8 +156,8 @@ void WriteCoordinates(const motion::Table& estimated, const motion::Table& truth
       const double error_deg = std::remainder(is_deg - should_deg, 360.0);
       const auto at = static_cast<std::size_t>(row);
       coordinate.errors.Add(error_deg, kinds[at]);
-      if (at < stated.size() && angle < body::kStatedAngles.size()) {
-        coordinate.errors.AddStated(error_deg, RadiansToDegrees(stated[at][angle]), kinds[at]);
+      if (at < stated.size() && angle) {
+        coordinate.errors.AddStated(error_deg, RadiansToDegrees(stated[at][*angle]), kinds[at]);
       }
       coordinate.estimated.Add(is_deg);
       coordinate.truth.Add(should_deg);

@@ -74,16 +74,6 @@ std::size_t ClipBegins(const pose_run::PoseRun& run) {
   return std::max(begin, run.judged_from);
 }
 
-/// Squared errors over their stated variances.
-struct Nees {
-  double sum = 0, count = 0;
-  void Add(double value) {
-    sum += value;
-    ++count;
-  }
-  double Mean() const { return count > 0 ? sum / count : 0; }
-};
-
 /// All outputs of a trial against the truth.
 class TrialScore {
  public:
@@ -127,8 +117,8 @@ class TrialScore {
     com_.WriteTo(json);
     smoothness_.WriteTo(json);
     feet_.WriteTo(json);
-    json["nees"] = nees_.Mean();
-    for (const auto& [name, group] : groups_) json["nees_of"][name] = group.nees.Mean();
+    json["nees"] = nees_.mean();
+    for (const auto& [name, group] : groups_) json["nees_of"][name] = group.nees.mean();
     json.update(breakdown_.Json());
     json["misfit_p50"] = misfit_.Quantile(0.5);
     json["misfit_p95"] = misfit_.Quantile(0.95);
@@ -166,10 +156,10 @@ class TrialScore {
   SmoothnessScore smoothness_;
   FootScore feet_;
   PoseBreakdown breakdown_;
-  Nees nees_;  ///< Positions of all joints.
+  Spread nees_;  ///< Squared errors of all joints' positions over their stated variances.
   struct Group {
     std::vector<int> joints;
-    Nees nees;
+    Spread nees;
   };
   std::map<std::string, Group> groups_;
   Spread misfit_;

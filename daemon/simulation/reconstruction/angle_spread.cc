@@ -58,7 +58,7 @@ Eigen::Matrix3d ToAngles(const Eigen::Matrix3d& above, const Eigen::Matrix3d& be
 
 }  // namespace
 
-AngleSpread::AngleSpread(const SubjectModel& model) : model_(&model) { Start(); }
+AngleSpread::AngleSpread(const SubjectModel& model) : model_(&model) {}
 
 void AngleSpread::Measure(std::size_t turn, pose::GaussNewton& solver) {
   const Turn& one = kTurns[turn];

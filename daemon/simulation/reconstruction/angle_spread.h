@@ -35,7 +35,7 @@ class AngleSpread {
  public:
   explicit AngleSpread(const SubjectModel& model);
 
-  void Start() { sd_rad_.fill(kUnknownAngleRad); }
+  void Start() { sd_rad_ = UnknownAngles(); }
   /// At the solver's last solution.
   void Advance(const BestConstants& best, pose::GaussNewton& solver);
   /// The deviations, times `doubt`; those of a leg in the air grow as its joints' do.
@@ -47,7 +47,7 @@ class AngleSpread {
 
   const SubjectModel* model_;
   std::size_t next_ = 0;
-  AngleSd sd_rad_{};
+  AngleSd sd_rad_ = UnknownAngles();
 };
 
 }  // namespace footing::reconstruction

@@ -247,8 +247,8 @@ void SolutionReport::Report(const ModeState& state, const Measurement& then,
   const double doubt = Doubt(output.misfit, then.momentum.trusted && !then.momentum.stepped);
   spread_.Advance(solver);
   spread_.Report(doubt, output);
-  angles_.Advance(best_, solver);
-  output.angle_sd_rad = angles_.Report(doubt, then.momentum, best_);
+  angles_.Advance(state.options.best, solver);
+  output.angle_sd_rad = angles_.Report(doubt, then.momentum, state.options.best);
   ReportCom(then.momentum, output);
   if (state.targets.has_com) {
     ReportPoseHeight(*state.model, state.pose.at, spread_.com_height_sd_m(), doubt, output);

@@ -140,7 +140,7 @@ struct ModeState {
 class SolutionReport {
  public:
   SolutionReport(const SubjectModel& model, const BestConstants& best)
-      : best_(best), spread_(model, best), angles_(model) {}
+      : spread_(model, best), angles_(model) {}
 
   void Start();
   /// After MovePoseToWorld: the pose of the instant `then`, which `solver` solved with `prior`.
@@ -148,7 +148,6 @@ class SolutionReport {
               pose::GaussNewton& solver, Output& output);
 
  private:
-  BestConstants best_;
   MeanMisfit misfit_;
   std::uint32_t resets_ = 0;  ///< Resets of the filters, whose contradictions end with each.
   PoseSpread spread_;

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -165,8 +164,7 @@ TEST_F(BodyTurnTest, AnglesThatASensorShowsHaveSmallDeviations) {
     thighs.Advance(inputs);
   }
   const auto sd_rad = [](const Reconstruction& of, std::string_view name) {
-    const auto found = std::find(body::kStatedAngles.begin(), body::kStatedAngles.end(), name);
-    return of.output().angle_sd_rad[static_cast<std::size_t>(found - body::kStatedAngles.begin())];
+    return of.output().angle_sd_rad.at(body::StatedAngle(name).value());
   };
   for (const double one_rad : bare.output().angle_sd_rad) {
     EXPECT_GT(one_rad, 0);
