@@ -3,12 +3,13 @@
 Usage: embed_pages.py PAGE_FOLDER DESCRIPTOR_SET OUT.cc
 
 Besides the files of the folder there is schema.js: the messages of the protocol as a table that page/protobuf.js reads,
-out of protoc's descriptors.
+out of protoc's descriptors. Scripts are sent without their lines of comment, which a phone would only load.
 """
 import gzip
 import hashlib
 import json
 import pathlib
+import re
 import sys
 
 from google.protobuf import descriptor_pb2
@@ -75,6 +76,7 @@ def main():
     descriptors = descriptor_pb2.FileDescriptorSet.FromString(descriptor_set.read_bytes())
     files = {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix in TYPES}
     files["schema.js"] = schema_of(descriptors).encode()
+    files = {name: re.sub(rb"(?m)^\s*//.*\n", b"", content) if name.endswith(".js") else content for name, content in files.items()}
     entries = []
     for name, content in sorted(files.items()):
         packed = gzip.compress(content, 9, mtime=0)
