@@ -80,10 +80,18 @@ BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double c
     course.angular_momentum.col(i) = momentum.angular_W;
     for (std::size_t f = 0; f < kFeet; ++f) PlaceSole(at, feet[f], i, course.sole_m[f]);
   }
-  for (auto& foot : course.sole_m) {
-    for (auto& point : foot) {
-      const std::vector<double> heights(point.row(2).begin(), point.row(2).end());
-      point.row(2).array() -= text::Quantile(heights, kLowShare);
+  // Soles are flat on the floor in the T-pose. One that points into the floor in the motion stands
+  // there all the same; one that never comes down so far stands where it does.
+  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), at);
+  std::array<Eigen::Matrix3Xd, kFootPoints> flat;
+  for (auto& point : flat) point.resize(3, 1);
+  const double floor_m = motion::FloorHeight(motion, body.landmarks);
+  for (std::size_t f = 0; f < kFeet; ++f) {
+    PlaceSole(at, feet[f], 0, flat);
+    for (std::size_t i = 0; i < kFootPoints; ++i) {
+      auto height_m = course.sole_m[f][i].row(2).array();
+      const double low_m = text::Quantile({height_m.begin(), height_m.end()}, kLowShare);
+      height_m -= std::max(low_m, flat[i](2, 0) + floor_m);
     }
   }
   return course;

@@ -16,7 +16,6 @@ namespace {
 
 using body::Landmark;
 
-constexpr double kStandShare = 0.25;  // Share of the frames that have a foot lower than it stands.
 constexpr Eigen::Index kFramesPerProgress = 2000;
 
 // A T-pose of straight lines has its weight over the heels. A person leans ahead until it is over
@@ -72,28 +71,6 @@ motion::Motion WithTPose(const motion::Motion& clip, const body::Body& body,
 
 }  // namespace
 
-double FloorHeight(const motion::Motion& motion, const body::Landmarks& landmarks) {
-  std::vector<int> joints;
-  for (const Landmark left : {Landmark::kLeftAnkle, Landmark::kLeftToe}) {
-    for (const Landmark landmark : {left, body::Mirrored(left)}) {
-      if (landmarks[landmark] >= 0) joints.push_back(landmarks[landmark]);
-    }
-  }
-  body::Kinematics standing(motion.skeleton), at(motion.skeleton);
-  body::ComputeKinematics(motion.skeleton, body::TPose(motion.skeleton, landmarks), standing);
-  std::vector<double> lowest;
-  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
-    body::ComputeKinematics(motion.skeleton, motion.q.col(i), at);
-    double low = std::numeric_limits<double>::infinity();
-    for (const int joint : joints) {
-      const auto index = static_cast<std::size_t>(joint);
-      low = std::min(low, at.p_WJ[index].z() - standing.p_WJ[index].z());
-    }
-    lowest.push_back(low);
-  }
-  return text::Quantile(std::move(lowest), kStandShare);
-}
-
 Result<Scene> MakeScene(motion::Motion clip, const body::PersonParameters& person,
                         const SceneOptions& options, const std::string& origin) {
   const auto named = [&origin](const Error& error) {
@@ -107,7 +84,7 @@ Result<Scene> MakeScene(motion::Motion clip, const body::PersonParameters& perso
 
   if (options.t_pose) {
     clip = motion::FacingForward(motion::Continuous(std::move(clip)), *landmarks);
-    clip.q.row(2).array() -= FloorHeight(clip, *landmarks);
+    clip.q.row(2).array() -= motion::FloorHeight(clip, *landmarks);
     if (options.loop_s > 0) clip = motion::Looped(clip, options.loop_s);
     clip = WithTPose(clip, *made, options);
   }

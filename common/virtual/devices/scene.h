@@ -32,11 +32,6 @@ struct Scene {
   GroundReaction reaction;
 };
 
-/// How high the lowest foot is over where it stands in the T-pose, by ankles and balls: tips of
-/// toes point into the ground in much recorded motion. In a quarter of the frames some foot is
-/// lower. The motion has frames.
-double FloorHeight(const motion::Motion& motion, const body::Landmarks& landmarks);
-
 /// Turns the clip forward, puts it on the floor (its feet as high as in the T-pose),
 /// prepends the T-pose, leaning so that the centre of mass is over the soles, on feet that stand as
 /// in the clip's first frame, and computes the forces. InvalidData when a landmark is missing, the

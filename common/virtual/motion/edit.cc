@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ namespace footing::motion {
 namespace {
 
 constexpr double kCutoffOfNewRate = 0.4;
+constexpr double kStandShare = 0.25;  // Share of the frames that have a foot lower than it stands.
 
 std::size_t Index(int value) { return static_cast<std::size_t>(value); }
 
@@ -183,6 +185,28 @@ Motion FacingForward(const Motion& motion, const body::Landmarks& landmarks) {
     out.q.col(frame) = q;
   }
   return out;
+}
+
+double FloorHeight(const Motion& motion, const body::Landmarks& landmarks) {
+  std::vector<int> joints;
+  for (const body::Landmark left : {body::Landmark::kLeftAnkle, body::Landmark::kLeftToe}) {
+    for (const body::Landmark landmark : {left, body::Mirrored(left)}) {
+      if (landmarks[landmark] >= 0) joints.push_back(landmarks[landmark]);
+    }
+  }
+  body::Kinematics standing(motion.skeleton), at(motion.skeleton);
+  body::ComputeKinematics(motion.skeleton, body::TPose(motion.skeleton, landmarks), standing);
+  std::vector<double> lowest;
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    body::ComputeKinematics(motion.skeleton, motion.q.col(i), at);
+    double low = std::numeric_limits<double>::infinity();
+    for (const int joint : joints) {
+      const auto index = static_cast<std::size_t>(joint);
+      low = std::min(low, at.p_WJ[index].z() - standing.p_WJ[index].z());
+    }
+    lowest.push_back(low);
+  }
+  return text::Quantile(std::move(lowest), kStandShare);
 }
 
 namespace {

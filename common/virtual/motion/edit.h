@@ -69,6 +69,11 @@ Result<std::vector<std::string>> HumanBones(const body::Skeleton& skeleton);
 /// the person looks along x with the hips over the origin.
 Motion FacingForward(const Motion& motion, const body::Landmarks& landmarks);
 
+/// How high the lowest foot is over where it stands in the T-pose, by ankles and balls: tips of
+/// toes point into the ground in much recorded motion. In a quarter of the frames some foot is
+/// lower. The motion has frames.
+double FloorHeight(const Motion& motion, const body::Landmarks& landmarks);
+
 /// Natural cubic spline through samples at equal steps: continuous to the second derivative.
 class Spline {
  public:

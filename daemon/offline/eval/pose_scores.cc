@@ -364,7 +364,6 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
       {"toe_up", &c.foot.toe_up},
       {"lift", &c.foot.lift},
       {"lift_time_s", &c.foot.lift_time_s},
-      {"ahead", &c.foot.ahead},
       {"ankle_rise", &c.foot.ankle_rise},
       {"toe_rise", &c.foot.toe_rise},
       {"forward", &c.foot.forward},

@@ -175,7 +175,7 @@ Result<OwnTake> MakeOwnTake(RecordedSession session, motion::Motion motion,
     return InvalidData(text.str());
   }
   motion = motion::FacingForward(motion::Continuous(std::move(motion)), person.landmarks);
-  motion.q.row(2).array() -= sensors::FloorHeight(motion, person.landmarks);
+  motion.q.row(2).array() -= motion::FloorHeight(motion, person.landmarks);
   OwnTake take;
   take.t_pose = *t_pose;
   take.body = body::WithMass(person, t_pose->mass_kg);

@@ -729,7 +729,7 @@ constexpr double kRootHeightM = 1;
 
 /// On the ground, and as large as a person whose root is 1 m high in the T-pose.
 motion::Motion Standing(motion::Motion motion, const body::Landmarks& landmarks) {
-  motion.q.row(2).array() -= virtual_sensors::FloorHeight(motion, landmarks);
+  motion.q.row(2).array() -= motion::FloorHeight(motion, landmarks);
   motion.q.topRows<3>() *= kRootHeightM / body::TPose(motion.skeleton, landmarks)(2);
   return motion;
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/base/text.h"
+#include "common/base/units.h"
 #include "common/body/kinematics.h"
 #include "common/body/skeleton_points.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kHeelBehindM = 0.045;  // Behind the ankle, as the soles of common/virtual/devices.
 constexpr double kMostSpreadM = 0.6;
+constexpr double kToeOutRad = DegreesToRadians(7);
 
 body::Kinematics InTPose(const body::Body& body) {
   body::Kinematics at(body.skeleton);
@@ -45,13 +47,16 @@ std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body) {
       shape.yaw_rad = std::atan2(along.y(), along.x());
       shape.length_m = along.norm() + kHeelBehindM;
     }
+    const Eigen::Matrix3d R_WS = body::AxisRotation(body::Axis::kZ, shape.yaw_rad);
+    const double outwards = side == 0 ? 1 : -1;
+    shape.yaw_rad = outwards * std::max(outwards * shape.yaw_rad, kToeOutRad);
     foot.R_WF = body::AxisRotation(body::Axis::kZ, shape.yaw_rad);
     const double to_rest_m = shape.rest_share * shape.length_m - kHeelBehindM;
     foot.ankle_F_m = {-to_rest_m, 0, ankle.z()};
-    foot.toe_F_m = foot.ankle_F_m + foot.R_WF.transpose() * (toe - ankle);
+    foot.toe_F_m = foot.ankle_F_m + R_WS.transpose() * (toe - ankle);
     const Eigen::Matrix3d& R_WJ = at.R_WJ[static_cast<std::size_t>(foot.ankle.joint)];
     foot.heel = foot.ankle;
-    foot.heel.p_J_m += R_WJ.transpose() * foot.R_WF * Eigen::Vector3d(-kHeelBehindM, 0, -ankle.z());
+    foot.heel.p_J_m += R_WJ.transpose() * R_WS * Eigen::Vector3d(-kHeelBehindM, 0, -ankle.z());
   }
   return feet;
 }
@@ -70,8 +75,7 @@ void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& 
   const double aloft_s = foot.contact ? 0 : foot.airborne_s;
   const double off = 1 - std::exp(-aloft_s / spread.lift_time_s);  // 0 on the ground, 1 in the air.
   const Eigen::Vector3d place =
-      foot.p_WF_m +
-      geometry.R_WF * Eigen::Vector3d(spread.ahead + off * spread.forward, 0, off * spread.lift);
+      foot.p_WF_m + geometry.R_WF * Eigen::Vector3d(off * spread.forward, 0, off * spread.lift);
   // W's axes serve as the foot's: a foot points ahead, more or less.
   const auto sd = [&](double up_m) {
     const Eigen::Array3d own(spread.along, spread.across, up_m);

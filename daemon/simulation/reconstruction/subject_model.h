@@ -42,7 +42,9 @@ struct FootGeometry {
   double RestM() const { return shape.rest_share * shape.length_m; }
 };
 
-/// Geometry of both feet, from the body in its T-pose.
+/// Geometry of both feet, from the body in its T-pose. Feet that point further ahead than people
+/// stand are turned out to 7 degrees, half of the angle between the feet that people prefer
+/// (McIlroy and Maki 1997, Clinical Biomechanics 12, 66).
 std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body);
 
 /// Subject of the momentum filters: the person on the cells, by the body in its T-pose.
@@ -55,8 +57,7 @@ struct FootSpread {
   double across = 0.02;
   double ankle_up = 0.024;
   double toe_up = 0.02;
-  double ahead = -0.015;                        ///< Ahead of F, in people who move.
-  double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat;
+  double ankle_rise = 0.01, toe_rise = 0.008;  ///< Feet are not always flat;
   double flat_up = 0.005;     ///< In the T-pose they are: its deviation of both heights,
   double leave_m = 0.3;       ///< and the hands' way out of it with which they rise (StandingRise).
   double lift = 0.22;         ///< In the air, how high the foot is,

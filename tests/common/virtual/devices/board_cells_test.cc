@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
+#include "common/body/kinematics.h"
 #include "common/virtual/devices/board_cells.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/options/load.h"
@@ -180,6 +181,36 @@ TEST(ShareBetweenFeet, GivesNothingToARaisedFoot) {
   const auto feet = ShareBetweenFeet(course, reaction, 300);
   EXPECT_LT(feet[1].load_n, 1);
   EXPECT_NEAR((feet[0].cop_m - Eigen::Vector2d(0.05, 0.16)).norm(), 0, 2e-3);
+}
+
+TEST(Follow, ASoleThatPointsIntoTheFloorLaterIsFlatInTheTPose) {
+  const body::Skeleton skeleton = body::StandardPerson(1.75);
+  const auto made = body::MakeBody(skeleton, body::PersonParameters{});
+  ASSERT_TRUE(made);
+  motion::Motion motion;
+  motion.skeleton = skeleton;
+  motion.rate_hz = 100;
+  motion.q = body::TPose(skeleton, made->landmarks).replicate(1, 400);
+  const int left = made->landmarks[body::Landmark::kLeftAnkle];
+  const body::Joint& ankle = skeleton.joint(left);
+  body::Kinematics at(skeleton);
+  body::ComputeKinematics(skeleton, motion.q.col(0), at);
+  const Eigen::Matrix3d& R_WP = at.R_WJ[static_cast<std::size_t>(ankle.parent)];
+  const Eigen::Matrix3d& R_WJ = at.R_WJ[static_cast<std::size_t>(left)];
+  Eigen::VectorXd toes_down = motion.q.col(0);
+  body::SetJointRotation(ankle, R_WP.transpose() * body::AxisRotation(body::Axis::kY, 0.2) * R_WJ,
+                         toes_down);
+  motion.q.rightCols(60).colwise() = toes_down;
+  const BodyCourse course = Follow(*made, motion);
+  const auto heights_m = [&](Eigen::Index frame) {
+    Eigen::Matrix<double, kFeet * kFootPoints, 1> heights;
+    for (std::size_t f = 0; f < kFeet; ++f)
+      for (std::size_t i = 0; i < kFootPoints; ++i)
+        heights(static_cast<Eigen::Index>(f * kFootPoints + i)) = course.sole_m[f][i](2, frame);
+    return heights;
+  };
+  EXPECT_LT(heights_m(100).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT(heights_m(380).minCoeff(), -0.01);
 }
 
 TEST(Follow, FindsTheStandardPersonAtRestOnBothSoles) {
