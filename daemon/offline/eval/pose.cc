@@ -39,6 +39,17 @@ void DescribeSensors(const PoseFlags& flags, const pose_run::PoseRun& run, order
   for (const auto site : segments) {
     json["worn"].push_back(reconstruction::kBodySiteNames[static_cast<std::size_t>(site)]);
   }
+  json["worn_heading"] = ordered_json::array();
+  for (const pose_run::WornHeading& one : run.headings) {
+    ordered_json row{
+        {"segment", reconstruction::kBodySiteNames[static_cast<std::size_t>(one.site)]},
+        {"known", one.known}};
+    if (one.known) {
+      row["error_deg"] = RadiansToDegrees(one.error_rad);
+      row["sd_deg"] = RadiansToDegrees(one.sd_rad);
+    }
+    json["worn_heading"].push_back(row);
+  }
   json["boards"] = flags.boards;
   json["boards_limited"] = flags.scene.settings.limited;
   json["cop_outside_sensors_share"] = run.outside_share;

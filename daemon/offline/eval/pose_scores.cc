@@ -195,6 +195,9 @@ void AddSensorFlags(CLI::App& command, PoseFlags& flags) {
           "Segment with a Wiimote with MotionPlus: pelvis, chest, head, thighs, shanks, or one "
           "of them such as left_thigh; may be repeated")
       ->delimiter(',');
+  command.add_flag("--squat-before,!--no-squat-before", settings.squat_before,
+                   "One squat before the motion shows worn sensors which way they face (default); "
+                   "else the motion's own squats do");
   command.add_flag("--joints", settings.joints,
                    "With --hands kinect: all joints of its skeleton, hidden ones inferred");
   command

@@ -112,7 +112,8 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
   KinectBody kinect(scene.body, settings.seed, 1 / settings.rate_hz, options);
   body::Kinematics at(scene.body.skeleton);
   const double step_s = 1 / settings.rate_hz;
-  ExtraSensors extra(scene, settings.head, settings.segments, settings.seed, step_s);
+  ExtraSensors extra(scene, settings.head, settings.segments, settings.squat_before, settings.seed,
+                     step_s);
   const auto aligned = static_cast<std::size_t>(kAlignedS * settings.rate_hz);
   const std::size_t count = FrameCount(scene, settings.rate_hz);
   std::size_t loaded = 0, outside = 0;
@@ -147,11 +148,15 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     } else if (settings.hands) {
       MeasureHands(scene.body, at, settings.hand_noise_m, random, frame.inputs.hands);
     }
-    extra.Advance(at, column, time_s < kStandS, i == aligned, frame.inputs);
+    const double t_pose_m = (run.frames.empty() ? frame : run.frames.front()).com_m.z();
+    const bool squats =
+        arms::IsSquat(frame.com_m.z(), t_pose_m, forces[0].load_n, forces[1].load_n);
+    extra.Advance(at, column, time_s < kStandS, i == aligned, squats, frame.inputs);
     run.frames.push_back(std::move(frame));
   }
   run.outside_share = loaded > 0 ? static_cast<double>(outside) / static_cast<double>(loaded) : 0;
   run.judged_from = static_cast<std::size_t>(std::lround(kStandS * settings.rate_hz));
+  run.headings = extra.headings();
   return run;
 }
 

@@ -135,10 +135,8 @@ namespace {
 
 /// Attitude at a site, by its index, before its T-pose.
 arms::SegmentAttitude Unaligned(std::size_t site) {
-  const auto where = static_cast<reconstruction::BodySite>(site);
-  const bool is_thigh = where == reconstruction::BodySite::kLeftThigh ||
-                        where == reconstruction::BodySite::kRightThigh;
-  return arms::SegmentAttitude(is_thigh ? -1 : 1);
+  return arms::SegmentAttitude(
+      reconstruction::SquatTurnOf(static_cast<reconstruction::BodySite>(site)));
 }
 
 }  // namespace
@@ -173,11 +171,17 @@ void PoseSegments::Take(const stream::MotionSample& sample, std::int64_t now_ns)
     const Eigen::Vector3d turn_S = sample.angular_velocity_radps + sample.gyroscope_bias_radps;
     sensor.attitude.Advance({body::AsHeld(sample.specific_force_mps2), body::AsHeld(turn_S),
                              sample.clipped_axes != 0 || sample.angular_velocity_clipped},
-                            step_s);
+                            step_s, squats_);
   }
 }
 
-void PoseSegments::Follow(bool calibrated, double calibration_progress) {
+void PoseSegments::Follow(bool calibrated, double calibration_progress,
+                          const momentum::Estimate& body) {
+  if (!calibrated) t_pose_height_m_ = 0;
+  if (calibrated && body.valid && t_pose_height_m_ == 0) t_pose_height_m_ = body.p_WC_m.z();
+  squats_ =
+      calibrated && body.valid &&
+      arms::IsSquat(body.p_WC_m.z(), t_pose_height_m_, body.feet[0].load_n, body.feet[1].load_n);
   const bool was_calibrated = std::exchange(calibrated_, calibrated);
   const double before = std::exchange(progress_, calibration_progress);
   for (std::size_t site = 0; site < sensors_.size(); ++site) {

@@ -436,14 +436,23 @@ void AddTurnTargets(const SubjectModel& model, const BodyTurns& turns, const Bes
     if (joint < 0) continue;  // This skeleton has none.
     const Eigen::Matrix3d R_JW =
         (turned.turn_W * model.t_pose_at.R_WJ[static_cast<std::size_t>(joint)]).transpose();
-    const auto add = [&](const Eigen::Vector3d& way_W, const Eigen::Vector3d& sd_m) {
-      targets.Add({joint, kSegmentM * (R_JW * way_W), kSegmentM * way_W, sd_m, joint});
-    };
     const double lean_m = kSegmentM * std::hypot(turned.inclination_sd_rad, best.segment_sd_rad);
     const double turn_m = kSegmentM * std::hypot(turned.heading_sd_rad, best.segment_sd_rad);
-    add(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(lean_m));
+    // A device whose heading is off shows a bend to another side than where it goes: the error is
+    // across the bend, and the larger the deeper it is.
+    const Eigen::Vector3d up_W = turned.turn_W.col(2);
+    const Eigen::Vector2d across_m =
+        kSegmentM * turned.heading_sd_rad * Eigen::Vector2d(up_W.y(), -up_W.x());
+    const Eigen::Vector3d sd_m(std::hypot(lean_m, across_m.x()), std::hypot(lean_m, across_m.y()),
+                               lean_m);
+    targets.Add({joint, kSegmentM * R_JW.col(2), kSegmentM * Eigen::Vector3d::UnitZ(), sd_m, joint,
+                 pose::WhiteningOf(sd_m, {across_m.x() * across_m.y(), 0, 0})});
     // How far it points up is the inclination's, which the first one has.
-    add(Eigen::Vector3d::UnitX(), {turn_m, turn_m, kUnknownSdM});
+    targets.Add({joint,
+                 kSegmentM * R_JW.col(0),
+                 kSegmentM * Eigen::Vector3d::UnitX(),
+                 {turn_m, turn_m, kUnknownSdM},
+                 joint});
   }
 }
 

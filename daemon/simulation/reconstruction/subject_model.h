@@ -104,6 +104,8 @@ inline constexpr std::array<const char*, kBodySites> kBodySiteNames = {
     "pelvis", "chest", "head", "left_thigh", "right_thigh", "left_shank", "right_shank"};
 /// The joint whose frame a segment turns with.
 body::Landmark JointOf(BodySite site);
+/// How a segment turns in a squat.
+arms::SquatTurn SquatTurnOf(BodySite site);
 /// How each segment has turned since the T-pose; by BodySite.
 using BodyTurns = std::array<arms::HandState, kBodySites>;
 

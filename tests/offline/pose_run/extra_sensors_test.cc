@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <vector>
 
 #include "common/body/kinematics.h"
 #include "common/body/skeleton_points.h"
@@ -100,6 +101,39 @@ TEST(ExtraSensors, ABeltShowsHowThePelvisHasTurnedSinceTheTPose) {
   EXPECT_LT(rms_rad, 0.13);
   EXPECT_GT(sd, run.frames[run.judged_from].inputs.turns[0].heading_sd_rad)
       << "nothing corrects it";
+}
+
+TEST(ExtraSensors, StateHowWellASquatHasShownWhichWayTheyFace) {
+  const auto scene = Stage(Standing(1), {}, "standing");
+  ASSERT_TRUE(scene.ok());
+  std::vector<reconstruction::BodySite> sites;
+  for (std::size_t site = 0; site < reconstruction::kBodySites; ++site)
+    sites.push_back(static_cast<reconstruction::BodySite>(site));
+  std::vector<double> nees(sites.size());
+  constexpr int kSeeds = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const ExtraSensors extra(*scene, HeadDevice::kNone, sites, true, seed, 1 / 60.0);
+    const auto headings = extra.headings();
+    ASSERT_EQ(headings.size(), sites.size());
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      ASSERT_TRUE(headings[i].known) << i;
+      nees[i] += std::pow(headings[i].error_rad / headings[i].sd_rad, 2) / kSeeds;
+    }
+  }
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    EXPECT_GT(nees[i], 0.3) << reconstruction::kBodySiteNames[i];
+    EXPECT_LT(nees[i], 1.8) << reconstruction::kBodySiteNames[i];
+  }
+}
+
+TEST(ExtraSensors, WithoutASquatTheyDoNotKnowWhichWayTheyFace) {
+  Settings settings;
+  settings.segments = {reconstruction::BodySite::kPelvis};
+  settings.squat_before = false;
+  const PoseRun run = RunPose(Turning(4), settings, "turning").value();
+  for (const Frame& frame : run.frames) ASSERT_FALSE(frame.inputs.turns[0].valid);
+  ASSERT_EQ(run.headings.size(), 1u);
+  EXPECT_FALSE(run.headings[0].known);
 }
 
 }  // namespace

@@ -114,7 +114,25 @@ TEST_F(BodyTurnTest, EachSegmentAsksForItsOwnJoint) {
       EXPECT_EQ(target.joint, joint);
       EXPECT_LT((R_WJ * target.p_J_m - target.p_W_m).norm(), 1e-12) << kBodySiteNames[site];
     }
-    EXPECT_GT(targets.points[1].sd_m.y(), 5 * targets.points[0].sd_m.y()) << "the heading drifts";
+    EXPECT_GT(targets.points[1].sd_m.x(), 5 * targets.points[0].sd_m.x()) << "the heading drifts";
+  }
+}
+
+TEST_F(BodyTurnTest, ABendToAnotherSideCostsWhatTheHeadingsDeviationSays) {
+  constexpr double kOffRad = 0.1, kHeadingSd = 0.3, kBentRad = 1;
+  const Eigen::Matrix3d off = About(Eigen::Vector3d::UnitZ(), kOffRad);
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.6, -0.8, 0)}) {
+    const Eigen::Matrix3d turn = About(axis, kBentRad), shown = off * turn * off.transpose();
+    const double across_rad = kOffRad * std::sin(kBentRad);
+    const double sure = Cost(BeltAt(shown), turn), unsure = Cost(BeltAt(shown, kHeadingSd), turn);
+    EXPECT_GT(sure, 0.8 * std::pow(across_rad / BestConstants{}.segment_sd_rad, 2)) << axis;
+    EXPECT_LT(unsure, 2 * std::pow(kOffRad / kHeadingSd, 2)) << axis;
+    // What bends further than shown costs as much as ever.
+    const Eigen::Matrix3d deeper = About(axis, kBentRad + kOffRad);
+    EXPECT_GT(Cost(BeltAt(turn, kHeadingSd), deeper),
+              0.8 * std::pow(kOffRad / BestConstants{}.segment_sd_rad, 2))
+        << axis;
   }
 }
 
