@@ -106,9 +106,8 @@ TEST(ExtraSensors, ABeltShowsHowThePelvisHasTurnedSinceTheTPose) {
 TEST(ExtraSensors, StateHowWellASquatHasShownWhichWayTheyFace) {
   const auto scene = Stage(Standing(1), {}, "standing");
   ASSERT_TRUE(scene.ok());
-  std::vector<reconstruction::BodySite> sites;
-  for (std::size_t site = 0; site < reconstruction::kBodySites; ++site)
-    sites.push_back(static_cast<reconstruction::BodySite>(site));
+  using reconstruction::BodySite;
+  const std::vector<BodySite> sites{BodySite::kPelvis, BodySite::kLeftThigh, BodySite::kRightShank};
   std::vector<double> nees(sites.size());
   constexpr int kSeeds = 20;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -121,8 +120,8 @@ TEST(ExtraSensors, StateHowWellASquatHasShownWhichWayTheyFace) {
     }
   }
   for (std::size_t i = 0; i < nees.size(); ++i) {
-    EXPECT_GT(nees[i], 0.3) << reconstruction::kBodySiteNames[i];
-    EXPECT_LT(nees[i], 1.8) << reconstruction::kBodySiteNames[i];
+    EXPECT_GT(nees[i], 0.3) << i;
+    EXPECT_LT(nees[i], 1.8) << i;
   }
 }
 
