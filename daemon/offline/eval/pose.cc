@@ -37,7 +37,20 @@ void DescribeSensors(const PoseFlags& flags, const pose_run::PoseRun& run, order
                  segments.end();
   json["worn"] = ordered_json::array();
   for (const auto site : segments) {
+    if (IsHand(site)) continue;
     json["worn"].push_back(reconstruction::kBodySiteNames[static_cast<std::size_t>(site)]);
+  }
+  json["hand_attitudes"] = std::any_of(segments.begin(), segments.end(), reconstruction::IsHand);
+  json["worn_heading"] = ordered_json::array();
+  for (const pose_run::FoundHeading& one : run.headings) {
+    ordered_json row{
+        {"segment", reconstruction::kBodySiteNames[static_cast<std::size_t>(one.site)]},
+        {"known", one.known}};
+    if (one.known) {
+      row["error_deg"] = RadiansToDegrees(one.error_rad);
+      row["sd_deg"] = RadiansToDegrees(one.sd_rad);
+    }
+    json["worn_heading"].push_back(row);
   }
   json["boards"] = flags.boards;
   json["boards_limited"] = flags.scene.settings.limited;

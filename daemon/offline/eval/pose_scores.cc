@@ -176,11 +176,12 @@ void AddSceneFlags(CLI::App& command, PoseFlags& flags) {
 void AddSensorFlags(CLI::App& command, PoseFlags& flags) {
   pose_run::Settings& settings = flags.scene.settings;
   command
-      .add_option("--hands", flags.hands,
-                  "Hand devices: move (positions, 1 cm noise), wiimote (attitudes of the fists), "
-                  "straps (of the arms), kinect (late "
-                  "positions), none")
-      ->check(CLI::IsMember({"move", "wiimote", "straps", "kinect", "none"}));
+      .add_option(
+          "--hands", flags.hands,
+          "Hand devices: move (positions, 1 cm noise, and attitudes), points (such positions "
+          "alone), wiimote (attitudes of the fists), straps (of the arms), kinect (late "
+          "positions), none")
+      ->check(CLI::IsMember({"move", "points", "wiimote", "straps", "kinect", "none"}));
   command
       .add_option("--head", flags.head,
                   "Tracker of the head: sphere (on a cap, 1 cm noise and 2 cm of its seat), kinect "
@@ -192,9 +193,12 @@ void AddSensorFlags(CLI::App& command, PoseFlags& flags) {
   command
       .add_option(
           "--worn", flags.segments,
-          "Segment with a Wiimote with MotionPlus: pelvis, chest, head, thighs, shanks, or one "
-          "of them such as left_thigh; may be repeated")
+          "Segment with a Wiimote with MotionPlus: pelvis, chest, head, thighs, shanks, hands, or "
+          "one of them such as left_thigh; may be repeated")
       ->delimiter(',');
+  command.add_flag("--squat-before,!--no-squat-before", settings.squat_before,
+                   "One squat before the motion shows worn sensors which way they face (default); "
+                   "else the motion's own squats do");
   command.add_flag("--joints", settings.joints,
                    "With --hands kinect: all joints of its skeleton, hidden ones inferred");
   command
@@ -284,27 +288,23 @@ Result<void> AddSites(const std::string& name, std::vector<reconstruction::BodyS
   }
   if (sites.size() > before) return {};
   return UsageError("--worn " + name +
-                    ": must be pelvis, chest, head, thighs, shanks, or one of a side such as "
-                    "left_thigh");
+                    ": must be pelvis, chest, head, thighs, shanks, hands, or one of a side such "
+                    "as left_thigh");
 }
 
-}  // namespace
+/// A Move in each hand, which measures how the hand turns.
+void AddHands(std::vector<reconstruction::BodySite>& sites) {
+  for (const auto hand :
+       {reconstruction::BodySite::kLeftHand, reconstruction::BodySite::kRightHand})
+    if (std::find(sites.begin(), sites.end(), hand) == sites.end()) sites.push_back(hand);
+}
 
-Result<void> Translate(PoseFlags& flags) {
-  pose_run::Settings& settings = flags.scene.settings;
-  settings.hands = flags.hands != "none";
-  if (flags.hands == "wiimote") settings.hand_device = pose_run::HandDevice::kWiimote;
-  if (flags.hands == "straps") settings.hand_device = pose_run::HandDevice::kStraps;
-  if (flags.hands == "kinect") settings.hand_device = pose_run::HandDevice::kKinect;
+/// Sensors of hands, head and segments that do not go together.
+Result<void> CheckSensors(const PoseFlags& flags) {
+  const pose_run::Settings& settings = flags.scene.settings;
   if (settings.joints && (flags.hands != "kinect" || flags.boards != "simulated")) {
     return UsageError("--joints goes with --hands kinect and --boards simulated");
   }
-  for (const std::string& name : flags.segments) {
-    if (const auto added = AddSites(name, settings.segments); !added) return added;
-  }
-  settings.head = flags.head == "sphere"   ? pose_run::HeadDevice::kSphere
-                  : flags.head == "kinect" ? pose_run::HeadDevice::kKinect
-                                           : pose_run::HeadDevice::kNone;
   const bool extra = flags.head != "none" || !settings.segments.empty();
   if (flags.head != "none" && flags.hands == "kinect") {
     return UsageError(
@@ -316,11 +316,38 @@ Result<void> Translate(PoseFlags& flags) {
         "--head, --worn and --belt are for the best mode on boards, not for --mode paper or "
         "--boards insoles");
   }
-  if (flags.boards == "insoles" && flags.hands != "move" && flags.hands != "none") {
-    return UsageError("--boards insoles has --hands move and none, not " + flags.hands);
+  const bool positions = flags.hands == "move" || flags.hands == "points";
+  if (flags.boards == "insoles" && !positions && flags.hands != "none") {
+    return UsageError("--boards insoles has --hands move, points and none, not " + flags.hands);
   }
   if (flags.boards == "forces" && (flags.hands == "wiimote" || flags.hands == "straps")) {
-    return UsageError("--boards forces has --hands move, kinect and none, not " + flags.hands);
+    return UsageError("--boards forces has --hands move, points, kinect and none, not " +
+                      flags.hands);
+  }
+  if (!settings.hands &&
+      std::any_of(settings.segments.begin(), settings.segments.end(), reconstruction::IsHand)) {
+    return UsageError("--worn hands needs --hands: attitudes count where the hands are seen");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> Translate(PoseFlags& flags) {
+  pose_run::Settings& settings = flags.scene.settings;
+  settings.hands = flags.hands != "none";
+  if (flags.hands == "wiimote") settings.hand_device = pose_run::HandDevice::kWiimote;
+  if (flags.hands == "straps") settings.hand_device = pose_run::HandDevice::kStraps;
+  if (flags.hands == "kinect") settings.hand_device = pose_run::HandDevice::kKinect;
+  for (const std::string& name : flags.segments) {
+    if (const auto added = AddSites(name, settings.segments); !added) return added;
+  }
+  settings.head = flags.head == "sphere"   ? pose_run::HeadDevice::kSphere
+                  : flags.head == "kinect" ? pose_run::HeadDevice::kKinect
+                                           : pose_run::HeadDevice::kNone;
+  if (auto can = CheckSensors(flags); !can) return can;
+  if (flags.hands == "move" && flags.boards != "insoles" && flags.mode == "best") {
+    AddHands(settings.segments);
   }
   if ((flags.boards == "forces") == flags.scene.forces.empty()) {
     return UsageError("--boards forces and --forces FILE (.mot, .sto or .c3d) go together");
@@ -358,6 +385,7 @@ std::map<std::string, double*> ConstantsOf(reconstruction::Options& options) {
       {"arm_spread", &c.arm_spread},
       {"segment_sd_rad", &c.segment_sd_rad},
       {"pelvis_sd_rad", &c.pelvis_sd_rad},
+      {"hand_turn_sd_rad", &c.hand_turn_sd_rad},
       {"foot_along", &c.foot.along},
       {"foot_across", &c.foot.across},
       {"ankle_up", &c.foot.ankle_up},

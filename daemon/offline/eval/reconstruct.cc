@@ -214,6 +214,7 @@ Result<ordered_json> Run(ReconstructFlags flags) {
   PoseFlags& pose = flags.pose;
   const bool plates = !pose.scene.forces.empty();
   pose.boards = plates ? "forces" : "simulated";
+  pose.hands = "points";
   pose.scene.settings.hand_noise_m = 0;  // The hands are the laboratory's own markers.
   if (const auto translated = Translate(pose); !translated) return translated.error();
   auto loaded = LoadScene(pose.scene);

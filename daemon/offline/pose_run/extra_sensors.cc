@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
+#include "common/base/units.h"
 #include "common/body/skeleton_points.h"
 #include "common/virtual/devices/noise.h"
 #include "daemon/simulation/pose/hand_attitude.h"
@@ -66,6 +69,31 @@ double SlipOf(reconstruction::BodySite site) {
   return is_thigh ? 0.08 : 0.05;
 }
 
+/// How far a segment turns in a squat: about the median of five people's.
+double DepthOf(reconstruction::BodySite site) {
+  switch (site) {
+    case reconstruction::BodySite::kPelvis:
+    case reconstruction::BodySite::kChest:
+      return 0.6;
+    case reconstruction::BodySite::kLeftThigh:
+    case reconstruction::BodySite::kRightThigh:
+      return 1.2;
+    default:
+      return 0.45;
+  }
+}
+
+/// How a joint is turned in the scene's T-pose from the skeleton's: legs stand as in the clip. The
+/// axes of a device are W's as the person stands.
+Eigen::Matrix3d TurnInTPose(const virtual_sensors::Scene& scene, body::Landmark landmark) {
+  const auto joint = static_cast<std::size_t>(scene.body.landmarks[landmark]);
+  const body::Skeleton& skeleton = scene.body.skeleton;
+  body::Kinematics stands(skeleton), drawn(skeleton);
+  body::ComputeKinematics(skeleton, scene.motion.q.col(0), stands);
+  body::ComputeKinematics(skeleton, body::TPose(skeleton, scene.body.landmarks), drawn);
+  return stands.R_WJ[joint] * drawn.R_WJ[joint].transpose();
+}
+
 constexpr std::size_t kHeadJoint = body::IndexOf(stream::BodyJoint::kHead);
 
 virtual_sensors::KinectOptions Unhidden() {
@@ -117,43 +145,124 @@ BodySensor::BodySensor(const virtual_sensors::Scene& scene, reconstruction::Body
       errors_(errors),
       device_(Seeded(errors.device, SeedOf(site, seed))),
       random_(SeedOf(site, seed) + 1),
-      reading_s_(1 / scene.motion.rate_hz) {}
+      attitude_(reconstruction::SquatTurnOf(site)),
+      reading_s_(1 / scene.motion.rate_hz) {
+  const Eigen::Matrix3d turned = TurnInTPose(scene, reconstruction::JointOf(site));
+  course_.specific_force_S_mps2 = (turned * course_.specific_force_S_mps2).eval();
+  course_.angular_velocity_S_radps = (turned * course_.angular_velocity_S_radps).eval();
+  errors_.device.seed = SeedOf(site, seed);
+  if (IsHand(site)) {  // Its errors are those of the grip.
+    held_ = arms::Turned(noise::NormalVector(errors.hold_rad, random_));
+    return;
+  }
+  const Eigen::Vector3d imaginary = noise::NormalVector(1, random_);
+  mounting_ = Eigen::Quaterniond(random_.Normal(), imaginary.x(), imaginary.y(), imaginary.z())
+                  .normalized()
+                  .toRotationMatrix();
+}
 
-arms::HandState BodySensor::Until(Eigen::Index column, double step_s) {
+void BodySensor::Feel(const Eigen::Vector3d& specific_force_S_mps2,
+                      const Eigen::Vector3d& angular_velocity_S_radps, bool squats) {
+  const auto reading = device_.Advance(mounting_ * specific_force_S_mps2,
+                                       mounting_ * angular_velocity_S_radps, reading_s_);
+  attitude_.Advance(
+      {reading.specific_force_S_mps2, reading.angular_velocity_S_radps, reading.clipped},
+      reading_s_, squats);
+}
+
+void BodySensor::SquatBefore() {
+  constexpr double kRestS = 5, kDownS = 1.5;
+  const Eigen::Vector3d up_mps2(0, 0, kStandardGravityMps2);
+  const arms::SquatTurn turn = reconstruction::SquatTurnOf(site_);
+  const double depth_rad = DepthOf(site_);
+  const double way_rad = turn.to_left_rad + turn.sd_rad * random_.Normal() +
+                         errors_.slip_rad / depth_rad * random_.Normal();
+  const Eigen::Vector3d axis =
+      turn.about_left * Eigen::Vector3d(-std::sin(way_rad), std::cos(way_rad), 0);
+  const auto rest = [&] {
+    for (double t_s = 0; t_s < kRestS; t_s += reading_s_)
+      Feel(up_mps2, Eigen::Vector3d::Zero(), false);
+  };
+  rest();
+  attitude_.Align();
+  for (double t_s = 0; t_s < 2 * kDownS; t_s += reading_s_) {  // Down and up.
+    const double phase = kPi * t_s / kDownS;
+    const double angle_rad = 0.5 * depth_rad * (1 - std::cos(phase));
+    const double rate_radps = 0.5 * depth_rad * kPi / kDownS * std::sin(phase);
+    Feel(arms::Turned(-angle_rad * axis) * up_mps2, rate_radps * axis, true);
+  }
+  rest();
+  squatted_before_ = true;
+}
+
+void BodySensor::Align() {
+  if (!squatted_before_) attitude_.Align();
+  aligned_ = true;
+}
+
+arms::HandState BodySensor::Until(Eigen::Index column, double step_s, bool squats) {
   for (; next_ <= column; ++next_) {
-    const auto reading = device_.Advance(course_.specific_force_S_mps2.col(next_),
-                                         course_.angular_velocity_S_radps.col(next_), reading_s_);
-    attitude_.Advance(
-        {reading.specific_force_S_mps2, reading.angular_velocity_S_radps, reading.clipped},
-        reading_s_);
+    Feel(course_.specific_force_S_mps2.col(next_), course_.angular_velocity_S_radps.col(next_),
+         squats);
   }
   const double stays = std::exp(-step_s / errors_.slip_s);
   slip_rad_ = stays * slip_rad_ +
               noise::NormalVector(errors_.slip_rad * std::sqrt(1 - stays * stays), random_);
   arms::HandState state = attitude_.state();
-  state.turn_W = state.turn_W * arms::Turned(slip_rad_);
+  state.valid = state.valid && aligned_;
+  state.turn_W = state.turn_W * held_ * arms::Turned(slip_rad_);
   return state;
 }
 
+FoundHeading BodySensor::heading() const {
+  if (!attitude_.state().valid) return {site_};
+  // Where the device's x points, less what of it is up as the accelerometer has it at rest.
+  constexpr int kReadings = 400;
+  virtual_sensors::HeldErrors device(errors_.device);
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  for (int i = 0; i < kReadings; ++i) {
+    up += device
+              .Advance(mounting_ * Eigen::Vector3d(0, 0, kStandardGravityMps2),
+                       Eigen::Vector3d::Zero(), reading_s_)
+              .specific_force_S_mps2;
+  }
+  up.normalize();
+  const Eigen::Vector3d ahead_W = mounting_.transpose() * (Eigen::Vector3d::UnitX() - up.x() * up);
+  const double off_rad = attitude_.heading_rad() - std::atan2(ahead_W.y(), ahead_W.x());
+  return {site_, true, std::remainder(off_rad, 2 * kPi), attitude_.mounting_sd_rad()};
+}
+
 ExtraSensors::ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head,
-                           const std::vector<reconstruction::BodySite>& segments,
+                           const std::vector<reconstruction::BodySite>& segments, bool squat_before,
                            std::uint64_t seed, double step_s)
     : step_s_(step_s) {
   if (head != HeadDevice::kNone) head_.emplace(scene.body, head, HeadErrors{}, seed, step_s);
   for (const reconstruction::BodySite site : segments) {
     BodySensorErrors errors;
+    const bool is_strapped = !IsHand(site);
+    if (is_strapped)
+      errors.device.grip_tilt_rad = errors.device.grip_heading_rad = 0;  // At any angle.
     errors.slip_rad = SlipOf(site);
     segments_.emplace_back(scene, site, errors, seed);
+    if (squat_before && is_strapped) segments_.back().SquatBefore();
   }
 }
 
 void ExtraSensors::Advance(const body::Kinematics& at, Eigen::Index column, bool in_t_pose,
-                           bool aligns, reconstruction::Inputs& inputs) {
+                           bool aligns, bool squats, reconstruction::Inputs& inputs) {
   if (head_) head_->Advance(at, in_t_pose, inputs);
   for (BodySensor& sensor : segments_) {
-    inputs.turns[static_cast<std::size_t>(sensor.site())] = sensor.Until(column, step_s_);
+    inputs.turns[static_cast<std::size_t>(sensor.site())] = sensor.Until(column, step_s_, squats);
     if (aligns) sensor.Align();
   }
+}
+
+std::vector<FoundHeading> ExtraSensors::headings() const {
+  std::vector<FoundHeading> headings;
+  for (const BodySensor& sensor : segments_) {
+    if (!IsHand(sensor.site())) headings.push_back(sensor.heading());
+  }
+  return headings;
 }
 
 }  // namespace footing::pose_run

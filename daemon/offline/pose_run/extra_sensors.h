@@ -99,28 +99,47 @@ struct BodySensorErrors {
   /// such a time.
   double slip_rad = 0.05;
   double slip_s = 0.5;
+  double hold_rad = 0.1;  ///< How far a hand is bent in the T-pose, about each axis.
 };
 
-/// A simulated Wiimote with MotionPlus on a segment.
+/// How well a sensor on a segment has found which way it faces.
+struct FoundHeading {
+  reconstruction::BodySite site;
+  bool known = false;
+  double error_rad = 0, sd_rad = 0;  ///< Where known: the error of its mounting, and as stated.
+};
+
+/// A simulated Wiimote with MotionPlus on a segment, fastened at any angle, or in a hand.
 class BodySensor {
  public:
   BodySensor(const virtual_sensors::Scene& scene, reconstruction::BodySite site,
              const BodySensorErrors& errors, std::uint64_t seed);
 
   reconstruction::BodySite site() const { return site_; }
+  /// A T-pose and one squat before the motion: as deep as people squat, and as far from straight
+  /// ahead as they differ. What follows begins in the T-pose.
+  void SquatBefore();
   /// How the segment has turned, by the samples up to this column of the scene's motion, `step_s`
-  /// after the call before.
-  arms::HandState Until(Eigen::Index column, double step_s);
+  /// after the call before. `squats`: the person does, now.
+  arms::HandState Until(Eigen::Index column, double step_s, bool squats);
   /// The T-pose is held and was for some seconds.
-  void Align() { attitude_.Align(); }
+  void Align();
+  FoundHeading heading() const;
 
  private:
+  void Feel(const Eigen::Vector3d& specific_force_S_mps2,
+            const Eigen::Vector3d& angular_velocity_S_radps, bool squats);
+
   reconstruction::BodySite site_;
   virtual_sensors::HeldCourse course_;
   BodySensorErrors errors_;
   virtual_sensors::HeldErrors device_;
   noise::Random random_;
-  arms::HandAttitude attitude_;
+  /// From the frame S of the course to the device's.
+  Eigen::Matrix3d mounting_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d held_ = Eigen::Matrix3d::Identity();  ///< How a wrist was bent in the T-pose.
+  arms::SegmentAttitude attitude_;
+  bool squatted_before_ = false, aligned_ = false;
   Eigen::Vector3d slip_rad_ = Eigen::Vector3d::Zero();
   Eigen::Index next_ = 0;
   double reading_s_;
@@ -129,14 +148,17 @@ class BodySensor {
 /// Those of them that there are.
 class ExtraSensors {
  public:
+  /// `squat_before`: worn sensors find which way they face in a squat before the motion; else in
+  /// the motion's own.
   ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head,
-               const std::vector<reconstruction::BodySite>& segments, std::uint64_t seed,
-               double step_s);
+               const std::vector<reconstruction::BodySite>& segments, bool squat_before,
+               std::uint64_t seed, double step_s);
 
   /// Puts what they measure into the inputs of a frame, whose joints are `at`. `in_t_pose`: it
-  /// is not complete yet; `aligns`: by now it was held for some seconds.
+  /// is not complete yet; `aligns`: by now it was held for some seconds; `squats`: the person does.
   void Advance(const body::Kinematics& at, Eigen::Index column, bool in_t_pose, bool aligns,
-               reconstruction::Inputs& inputs);
+               bool squats, reconstruction::Inputs& inputs);
+  std::vector<FoundHeading> headings() const;
 
  private:
   std::optional<HeadTracker> head_;

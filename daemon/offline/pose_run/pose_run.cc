@@ -94,6 +94,26 @@ FootForcesAt SimulatedForces(const sensors::Scene& scene) {
   };
 }
 
+namespace {
+
+/// The true frame of a body whose joints are `at`, with nothing measured yet.
+Frame TrueFrame(const sensors::Scene& scene, Eigen::Index column,
+                const std::array<sensors::FootForce, sensors::kFeet>& forces,
+                const body::Kinematics& at) {
+  Frame frame;
+  frame.q = scene.motion.q.col(column);
+  frame.angular_momentum = scene.course.angular_momentum.col(column);
+  frame.com_m = body::CentreOfMass(scene.body, at);
+  for (std::size_t f = 0; f < sensors::kFeet; ++f) {
+    frame.feet[f] = {forces[f].load_n, forces[f].cop_m,
+                     body::Place(body::Ankle(scene.body, static_cast<int>(f)), at),
+                     body::Place(body::Toe(scene.body, static_cast<int>(f)), at)};
+  }
+  return frame;
+}
+
+}  // namespace
+
 PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
                  const FootForcesAt& forces_at) {
   PoseRun run;
@@ -112,7 +132,8 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
   KinectBody kinect(scene.body, settings.seed, 1 / settings.rate_hz, options);
   body::Kinematics at(scene.body.skeleton);
   const double step_s = 1 / settings.rate_hz;
-  ExtraSensors extra(scene, settings.head, settings.segments, settings.seed, step_s);
+  ExtraSensors extra(scene, settings.head, settings.segments, settings.squat_before, settings.seed,
+                     step_s);
   const auto aligned = static_cast<std::size_t>(kAlignedS * settings.rate_hz);
   const std::size_t count = FrameCount(scene, settings.rate_hz);
   std::size_t loaded = 0, outside = 0;
@@ -120,19 +141,13 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     const double time_s = static_cast<double>(i) * step_s;
     const Eigen::Index column = ColumnAt(scene, time_s);
     const auto forces = forces_at(time_s, column);
-    Frame frame;
+    body::ComputeKinematics(scene.body.skeleton, scene.motion.q.col(column), at);
+    Frame frame = TrueFrame(scene, column, forces, at);
     frame.inputs.loads.time_s = time_s;
-    frame.q = scene.motion.q.col(column);
-    frame.angular_momentum = scene.course.angular_momentum.col(column);
-    body::ComputeKinematics(scene.body.skeleton, frame.q, at);
-    frame.com_m = body::CentreOfMass(scene.body, at);
     const double scale = time_s < kWeighedS ? 1 + settings.mass_error : 1;
     for (std::size_t f = 0; f < sensors::kFeet; ++f) {
       const auto load = boards.Load(f, forces[f], settings);
       frame.inputs.loads.feet[f] = boards.Read(f, load, scale, step_s);
-      frame.feet[f] = {forces[f].load_n, forces[f].cop_m,
-                       body::Place(body::Ankle(scene.body, static_cast<int>(f)), at),
-                       body::Place(body::Toe(scene.body, static_cast<int>(f)), at)};
       if (forces[f].load_n > kLoadedN) {
         ++loaded;
         outside += load.outside ? 1 : 0;
@@ -147,11 +162,15 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     } else if (settings.hands) {
       MeasureHands(scene.body, at, settings.hand_noise_m, random, frame.inputs.hands);
     }
-    extra.Advance(at, column, time_s < kStandS, i == aligned, frame.inputs);
+    const double t_pose_m = (run.frames.empty() ? frame : run.frames.front()).com_m.z();
+    const bool squats =
+        arms::IsSquat(frame.com_m.z(), t_pose_m, forces[0].load_n, forces[1].load_n);
+    extra.Advance(at, column, time_s < kStandS, i == aligned, squats, frame.inputs);
     run.frames.push_back(std::move(frame));
   }
   run.outside_share = loaded > 0 ? static_cast<double>(outside) / static_cast<double>(loaded) : 0;
   run.judged_from = static_cast<std::size_t>(std::lround(kStandS * settings.rate_hz));
+  run.headings = extra.headings();
   return run;
 }
 

@@ -58,6 +58,7 @@ struct Settings {
   double hand_noise_m = 0.01;                      ///< White, of each axis; of kMove.
   HeadDevice head = HeadDevice::kNone;             ///< A tracker of the head alone.
   std::vector<reconstruction::BodySite> segments;  ///< Segments with a Wiimote with MotionPlus.
+  bool squat_before = true;  ///< So that these know which way they face; else by the motion's own.
   bool perfect_devices =
       false;  ///< For kWiimote and kStraps: they and their mounting have no errors.
   virtual_sensors::CellErrorConfig errors;
@@ -109,6 +110,7 @@ struct PoseRun {
   std::size_t judged_from = 0;  ///< The first frame after the calibration.
   double clock_offset_s = 0;    ///< Time on the motion's clock less the frames' time_s.
   Activities activities;
+  std::vector<FoundHeading> headings;  ///< At the end, of Settings::segments.
 };
 
 /// Duration of the T-pose,

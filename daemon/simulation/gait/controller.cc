@@ -465,6 +465,16 @@ void FollowGround(const Context& context, GaitMemory& memory) {
       std::clamp(wanted_m - memory.walking_step.support_height_m, -change_m, change_m);
 }
 
+/// A swinging hip accelerates the COM, which moves a foreseen foothold, whose rate is torque of the
+/// same hip: a loop without delay, and with a gain near one. This smooths it.
+constexpr double kFootholdSmoothedS = 0.005;
+
+void LeadFoot(const Context& context, const Vector3d& foothold_W_m, GaitMemory& memory) {
+  const bool foresees = context.TimeIn(memory) > 0 && AimsAhead(context, memory) > 0;
+  const double kept = foresees ? kFootholdSmoothedS / (kFootholdSmoothedS + context.step_s) : 0;
+  memory.foothold_W_m = foothold_W_m + kept * (memory.foothold_W_m - foothold_W_m);
+}
+
 }  // namespace
 
 WalkingCues SenseWalking(const Context& context, const GaitMemory& memory) {
@@ -492,7 +502,7 @@ Targets AdvanceWalking(const Context& context, GaitMemory& memory) {
     memory.phase_start_s -= foresight * foothold.hurry * context.step_s;
     return WalkingTargets(context, memory);
   }
-  memory.foothold_W_m = foothold.p_WF_m;
+  LeadFoot(context, foothold.p_WF_m, memory);
   memory.walking_step.strides_to_pit = foothold.strides_to_pit;
   const bool swinging = context.TimeIn(memory) < SwingTime(context, memory);
   if (swinging) memory.phase_start_s -= foothold.hurry * context.step_s;

@@ -24,6 +24,10 @@ constexpr double kHurryPerMetre = 6;
 /// over a foot further ahead, and is left low on a slanting leg. The last one may be further.
 constexpr double kBrakingReachS = 0.115;
 constexpr double kLandingReachS = 0.18;
+/// A foot in a step this quick follows balance until it touches; in a slow one it comes near rest.
+constexpr double kQuickStepS = 0.42, kSlowStepS = 0.56;
+/// Part of the time to touchdown that a slow step's foothold is ahead.
+constexpr double kAimsAhead = 0.7;
 
 struct Pendulum {
   double rate_radps;  ///< w = sqrt(g / h).
@@ -42,12 +46,31 @@ Pendulum SupportPendulum(const Context& context, const GaitMemory& memory) {
   return {rate, growth * capture_H};
 }
 
+/// Where a foot is led that is to touch down nearly at rest: as the capture point moves away from
+/// the supporting foot, towards where it will be. A leg that lands at rest takes no momentum from
+/// the body, so it stands further ahead by the way that its lower link would have cost.
+Vector3d Aimed(const Context& context, const GaitMemory& memory, const Pendulum& pendulum) {
+  const double share = AimsAhead(context, memory);
+  if (share == 0) return pendulum.r_foot_to_capture_H;
+  const double left_s = StepTime(context, memory) * (1 - StepPhase(context, memory));
+  Vector3d aimed_H = std::exp(pendulum.rate_radps * share * left_s) * pendulum.r_foot_to_capture_H;
+  aimed_H.x() += share * context.biped.link_mass_kg / context.biped.mass_kg() *
+                 pendulum.r_foot_to_capture_H.x();
+  return aimed_H;
+}
+
 }  // namespace
+
+double AimsAhead(const Context& context, const GaitMemory& memory) {
+  const double slow = (StepTime(context, memory) - kQuickStepS) / (kSlowStepS - kQuickStepS);
+  return kAimsAhead * context.gains.style.foresight * std::clamp(slow, 0.0, 1.0);
+}
 
 WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& memory) {
   const WalkingGains& gains = context.gains.walking;
   const double side = -biped::Side(memory.support_leg);  // Side of the swing leg.
-  const auto [rate, capture_H] = SupportPendulum(context, memory);
+  const Pendulum pendulum = SupportPendulum(context, memory);
+  const auto [rate, capture_H] = pendulum;
   const double step_time_s = StepTime(context, memory);
   const double growth = std::exp(rate * step_time_s);
 
@@ -55,8 +78,9 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const double aside_m = side * gains.step_width_m / (1 + growth);
   // The offset belongs to the coming step, which goes along the turned heading.
   const Vector3d offset_H = ToWorld(context.goal.turn_per_step_rad, Vector3d(-back_m, aside_m, 0));
-  const double natural_m = capture_H.x() + offset_H.x() + memory.speed.integrators.walk_m;
-  const double outward_m = side * (capture_H.y() + offset_H.y());
+  const Vector3d aimed_H = Aimed(context, memory, pendulum);
+  const double natural_m = aimed_H.x() + offset_H.x() + memory.speed.integrators.walk_m;
+  const double outward_m = side * (aimed_H.y() + offset_H.y());
 
   WalkingFoothold foothold;
   // The capture point moves away from the foot until touchdown.

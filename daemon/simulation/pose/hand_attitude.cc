@@ -229,41 +229,67 @@ void HandAttitude::Align(bool heading_matters) {
   state_.valid = true;
 }
 
+bool IsSquat(double com_height_m, double t_pose_height_m, double left_load_n, double right_load_n) {
+  constexpr double kSunkTo = 0.94;      // Six centimetres: more than the height is uncertain by.
+  constexpr double kLeastShare = 0.25;  // On each foot.
+  const double load_n = left_load_n + right_load_n;
+  return load_n > 0 && std::min(left_load_n, right_load_n) > kLeastShare * load_n &&
+         com_height_m < kSunkTo * t_pose_height_m;
+}
+
+namespace {
+
+constexpr double kBentRad = 0.17;    // A smaller bend shows little of its axis.
+constexpr double kEnoughRadS = 0.1;  // Half a second of that and a little more.
+constexpr double kMostRadS = 3;      // A few squats; by later ones the heading has drifted.
+constexpr double kAgreement = 0.9;   // Bends that are 25 degrees apart show nothing.
+constexpr double kLeanSdRad = 0.07;  // How a sensor slips, and how a body sways, in a bend.
+
+}  // namespace
+
 void SegmentAttitude::Align() {
-  attitude_.Align(/*heading_matters=*/false);
+  attitude_.Align(/*heading_matters=*/turn_.about_left == 0);
   bent_F_.setZero();
-  bent_rad_s_ = 0;
-  squatted_ = false;
+  bent_rad_s_ = bent_rad2_s_ = 0;
   state_ = {};
 }
 
-void SegmentAttitude::Advance(const HandReading& reading, double step_s) {
-  constexpr double kBentRad = 0.35;      // A smaller bend shows little of its axis.
-  constexpr double kEnoughRadS = 0.35;   // A second of that.
-  constexpr double kMostRadS = 2;        // Later bends are about any axis,
-  constexpr double kUprightRad = 0.2;    // and so is what follows an upright segment.
-  constexpr double kAcrossSdRad = 0.12;  // A squat is so nearly sagittal.
+void SegmentAttitude::Watch(const Eigen::Vector3d& up_F, double step_s) {
+  const double bent_rad = std::atan2(up_F.head<2>().norm(), up_F.z());
+  if (bent_rad < kBentRad || bent_rad_s_ >= kMostRadS) return;
+  bent_F_ += bent_rad * step_s * Eigen::Vector2d(-up_F.y(), up_F.x()).normalized();
+  bent_rad_s_ += bent_rad * step_s;
+  bent_rad2_s_ += Square(bent_rad) * step_s;
+}
+
+double SegmentAttitude::heading_rad() const {
+  const Eigen::Vector2d left_F = turn_.about_left * bent_F_;
+  return std::numbers::pi / 2 + turn_.to_left_rad - std::atan2(left_F.y(), left_F.x());
+}
+
+double SegmentAttitude::mounting_sd_rad() const {
+  return std::hypot(turn_.sd_rad, kLeanSdRad * bent_rad_s_ / bent_rad2_s_);
+}
+
+void SegmentAttitude::Advance(const HandReading& reading, double step_s, bool squats) {
   attitude_.Advance(reading, step_s);
   const HandState& turned = attitude_.state();
   if (!turned.valid) return;
-  const Eigen::Vector3d up_F = turned.turn_W.col(2);
-  const double bent_rad = std::atan2(up_F.head<2>().norm(), up_F.z());
-  const bool enough = bent_F_.norm() >= kEnoughRadS;
-  squatted_ = squatted_ || bent_rad_s_ >= kMostRadS || (enough && bent_rad < kUprightRad);
-  if (bent_rad > kBentRad && !squatted_) {
-    bent_F_ += bent_rad * step_s * Eigen::Vector2d(-up_F.y(), up_F.x()).normalized();
-    bent_rad_s_ += bent_rad * step_s;
+  if (turn_.about_left == 0) {
+    state_ = turned;
+    state_.heading_sd_rad = std::hypot(turned.heading_sd_rad, turn_.sd_rad);
+    return;
   }
-  if (bent_F_.norm() < kEnoughRadS) return;
-  const double left_rad = std::atan2(squats_ * bent_F_.y(), squats_ * bent_F_.x());
+  if (squats) Watch(turned.turn_W.col(2), step_s);
+  state_.valid = bent_rad_s_ >= kEnoughRadS && bent_F_.norm() > kAgreement * bent_rad_s_;
+  if (!state_.valid) return;
   const Eigen::Matrix3d R_WF =
-      Eigen::AngleAxisd(std::numbers::pi / 2 - left_rad, Eigen::Vector3d::UnitZ())
-          .toRotationMatrix();
+      Eigen::AngleAxisd(heading_rad(), Eigen::Vector3d::UnitZ()).toRotationMatrix();
   state_ = turned;
   state_.turn_W = R_WF * turned.turn_W * R_WF.transpose();
   state_.acceleration_W_mps2 = R_WF * turned.acceleration_W_mps2;
   state_.angular_velocity_W_radps = R_WF * turned.angular_velocity_W_radps;
-  state_.heading_sd_rad = std::hypot(turned.heading_sd_rad, kAcrossSdRad);
+  state_.heading_sd_rad = std::hypot(turned.heading_sd_rad, mounting_sd_rad());
 }
 
 }  // namespace footing::arms

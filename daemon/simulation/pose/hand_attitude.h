@@ -156,26 +156,45 @@ class HandAttitude {
   HandState state_;
 };
 
+/// How a segment turns in a squat, seen from above.
+struct SquatTurn {
+  /// 1: its upper end goes ahead (pelvis, trunk, shank); -1: back (thigh); 0: no squat is needed,
+  /// since what a hand holds points ahead in the T-pose.
+  double about_left = 1;
+  /// How far to the left of straight ahead it goes in the mean of people; the thigh's lower end.
+  double to_left_rad = 0;
+  double sd_rad = 0.12;  ///< And how far people are from that.
+};
+
+/// Whether a person squats or bows: both feet carry weight and the centre of mass has sunk from
+/// where the T-pose has it. Who leans to a side, raises a leg or nods does not.
+bool IsSquat(double com_height_m, double t_pose_height_m, double left_load_n, double right_load_n);
+
 /// The attitude of a device that is worn on a segment at any angle, from a T-pose on. The T-pose
-/// does not show which way the device points: the first bend does, which is that of a squat, about
-/// the person's left. Until then the state is invalid. A value.
+/// does not show which way the device points; the way in which it bends in the first squats does.
+/// Until then the state is invalid. A shallow bend shows it less surely than a deep one, and the
+/// stated deviation says so. A value.
 class SegmentAttitude {
  public:
-  /// `squats`: how the segment turns about the left in a squat, 1 forwards (pelvis, trunk, shank)
-  /// or -1 backwards (thigh).
-  explicit SegmentAttitude(double squats = 1) : squats_(squats) {}
+  explicit SegmentAttitude(const SquatTurn& turn = {}) : turn_(turn) {}
 
-  void Advance(const HandReading& reading, double step_s);
+  /// `squats`: IsSquat of the person, now.
+  void Advance(const HandReading& reading, double step_s, bool squats);
   void BeginTPose() { attitude_.BeginTPose(); }
   void Align();
   const HandState& state() const { return state_; }
+  /// Heading in the T-pose of the device's x, or of its y where x is upright: its deviation is that
+  /// of the heading without what has drifted since. Where a squat has shown it.
+  double heading_rad() const;
+  double mounting_sd_rad() const;
 
  private:
-  double squats_;
+  void Watch(const Eigen::Vector3d& up_F, double step_s);
+
+  SquatTurn turn_;
   HandAttitude attitude_{0};
   Eigen::Vector2d bent_F_ = Eigen::Vector2d::Zero();  ///< Sum of the axes of bends, rad s.
-  double bent_rad_s_ = 0;
-  bool squatted_ = false;  ///< The first bend is over.
+  double bent_rad_s_ = 0, bent_rad2_s_ = 0;           ///< Sums of their angles, and squares.
   HandState state_;
 };
 

@@ -56,8 +56,8 @@ inline Eigen::Vector3d PlaceOf(const PointTarget& point, const body::Kinematics&
 }
 
 /// Fists or arms (up to 6), ankles and balls (4), the joints of a skeleton (13), and two directions
-/// of each worn sensor (14), with one to spare.
-inline constexpr int kMaxPoints = 38;
+/// of each worn sensor (18), with one to spare.
+inline constexpr int kMaxPoints = 42;
 
 /// Terms that one frame's pose is solved for, those of equation (6), each with its standard
 /// deviation. Terms that are not valid are left out.

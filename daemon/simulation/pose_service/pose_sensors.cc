@@ -135,10 +135,8 @@ namespace {
 
 /// Attitude at a site, by its index, before its T-pose.
 arms::SegmentAttitude Unaligned(std::size_t site) {
-  const auto where = static_cast<reconstruction::BodySite>(site);
-  const bool is_thigh = where == reconstruction::BodySite::kLeftThigh ||
-                        where == reconstruction::BodySite::kRightThigh;
-  return arms::SegmentAttitude(is_thigh ? -1 : 1);
+  return arms::SegmentAttitude(
+      reconstruction::SquatTurnOf(static_cast<reconstruction::BodySite>(site)));
 }
 
 }  // namespace
@@ -161,6 +159,8 @@ void PoseSegments::Take(const stream::MotionSample& sample, std::int64_t now_ns)
   for (std::size_t site = 0; site < sensors_.size(); ++site) {
     Sensor& sensor = sensors_[site];
     if (sensor.device != sample.device) continue;
+    const bool is_hand = IsHand(static_cast<reconstruction::BodySite>(site));
+    if (is_hand && (sample.uncalibrated || sample.gyroscope_uncalibrated)) continue;
     const double step_s = NanosecondsToSeconds(sample.sampled_ns - sensor.sampled_ns);
     const bool first = !sensor.heard.ever;
     if (!first && step_s <= 0) continue;
@@ -173,11 +173,17 @@ void PoseSegments::Take(const stream::MotionSample& sample, std::int64_t now_ns)
     const Eigen::Vector3d turn_S = sample.angular_velocity_radps + sample.gyroscope_bias_radps;
     sensor.attitude.Advance({body::AsHeld(sample.specific_force_mps2), body::AsHeld(turn_S),
                              sample.clipped_axes != 0 || sample.angular_velocity_clipped},
-                            step_s);
+                            step_s, squats_);
   }
 }
 
-void PoseSegments::Follow(bool calibrated, double calibration_progress) {
+void PoseSegments::Follow(bool calibrated, double calibration_progress,
+                          const momentum::Estimate& body) {
+  if (!calibrated) t_pose_height_m_ = 0;
+  if (calibrated && body.valid && t_pose_height_m_ == 0) t_pose_height_m_ = body.p_WC_m.z();
+  squats_ =
+      calibrated && body.valid &&
+      arms::IsSquat(body.p_WC_m.z(), t_pose_height_m_, body.feet[0].load_n, body.feet[1].load_n);
   const bool was_calibrated = std::exchange(calibrated_, calibrated);
   const double before = std::exchange(progress_, calibration_progress);
   for (std::size_t site = 0; site < sensors_.size(); ++site) {
@@ -371,7 +377,14 @@ constexpr std::array<std::pair<reconstruction::BodySite, DeviceRole>, reconstruc
         {reconstruction::BodySite::kRightThigh, DeviceRole::kRightThigh},
         {reconstruction::BodySite::kLeftShank, DeviceRole::kLeftLeg},
         {reconstruction::BodySite::kRightShank, DeviceRole::kRightLeg},
+        {reconstruction::BodySite::kLeftHand, DeviceRole::kLeftHand},
+        {reconstruction::BodySite::kRightHand, DeviceRole::kRightHand},
     }};
+
+/// Other devices lie in a fist at any angle.
+bool PointsAheadInTheFist(stream::DeviceKind kind) {
+  return kind == stream::DeviceKind::kPsMove || kind == stream::DeviceKind::kWiimote;
+}
 
 /// A device of that kind in that role.
 std::optional<std::uint32_t> DeviceWith(const rig::Follower& follower, DeviceRole role,
@@ -407,7 +420,8 @@ void PoseSensors::Bind() {
   }
   for (const auto& [site, role] : kSegmentRoles) {
     const stream::DeviceStatus* device = follower_.With(role);
-    segments_.Bind(site, device == nullptr ? std::nullopt : std::optional(device->device));
+    const bool counts = device != nullptr && (!IsHand(site) || PointsAheadInTheFist(device->kind));
+    segments_.Bind(site, counts ? std::optional(device->device) : std::nullopt);
   }
   const stream::BoardLayout layout = follower_.Layout();
   PlaceCells(layout.left, layout.left_geometry, inputs_.sensors.loads.feet[0]);

@@ -69,16 +69,17 @@ class PoseArms {
 
 /// How segments have turned since the T-pose by the devices worn on them, of any kind that has a
 /// gyroscope, in the roles pelvis (on a belt), trunk (chest), head, and of each side thigh and leg
-/// (shank). A device counts from the first squat after the T-pose on (arms::SegmentAttitude). One
-/// that is not heard for longer than PoseArms::kTimeoutS counts for nothing until the next T-pose.
+/// (shank), and by PS Moves and Wiimotes in the hands, which count at once. A device counts from
+/// the first squat after the T-pose on (arms::SegmentAttitude), which the loads show. One that is
+/// not heard for longer than PoseArms::kTimeoutS counts for nothing until the next T-pose.
 class PoseSegments {
  public:
   PoseSegments();
   /// Which device is worn there.
   void Bind(reconstruction::BodySite site, std::optional<std::uint32_t> device);
   void Take(const stream::MotionSample& sample, std::int64_t now_ns);
-  /// Takes in the engine's report on its T-pose.
-  void Follow(bool calibrated, double calibration_progress);
+  /// Takes in the engine's report on its T-pose, and on the body.
+  void Follow(bool calibrated, double calibration_progress, const momentum::Estimate& body);
   /// Puts what they show into the inputs.
   void Report(std::int64_t now_ns, PoseInputs& inputs) const;
 
@@ -91,8 +92,8 @@ class PoseSegments {
   };
 
   std::array<Sensor, reconstruction::kBodySites> sensors_;
-  bool calibrated_ = false;
-  double progress_ = 0;
+  bool calibrated_ = false, squats_ = false;
+  double progress_ = 0, t_pose_height_m_ = 0;
 };
 
 /// A point that is not heard of for longer counts as not seen.
@@ -180,7 +181,7 @@ class PoseSensors {
   /// Takes in the engine's report on its T-pose, frame by frame: Wiimotes are aligned by it.
   void Follow(const PoseFrame& frame) {
     arms_.Follow(frame.t_pose.complete, frame.t_pose.progress);
-    segments_.Follow(frame.t_pose.complete, frame.t_pose.progress);
+    segments_.Follow(frame.t_pose.complete, frame.t_pose.progress, frame.momentum);
   }
   /// Asks the engine for a new T-pose.
   void Calibrate();

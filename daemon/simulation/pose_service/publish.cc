@@ -363,8 +363,9 @@ void AddSegmentSensors(const PoseFrame& frame, std::string& note) {
   std::string waiting;
   for (std::size_t site = 0; site < reconstruction::kBodySites; ++site) {
     // A head hardly bends in a squat: it counts once it has nodded, and nobody is asked to.
-    const bool is_head = site == static_cast<std::size_t>(reconstruction::BodySite::kHead);
-    if (!frame.input.turn_awaits[site] || is_head) continue;
+    const auto where = static_cast<reconstruction::BodySite>(site);
+    const bool needs_none = where == reconstruction::BodySite::kHead || IsHand(where);
+    if (!frame.input.turn_awaits[site] || needs_none) continue;
     std::string name = reconstruction::kBodySiteNames[site];
     std::replace(name.begin(), name.end(), '_', ' ');
     waiting += (waiting.empty() ? "" : ", ") + name;

@@ -162,6 +162,11 @@ Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& point
                   .momentum = {},
                   .joints = UsableJoints(inputs.joints, origin_m_),
                   .turns = FromStance(UsableTurns(inputs.turns), stance_)};
+  // Where no tracker sees a hand, the arm's estimate has what its device measures.
+  for (std::size_t side = 0; side < kHands; ++side) {
+    const auto hand = static_cast<std::size_t>(BodySite::kLeftHand) + side;
+    now.turns[hand].valid = now.turns[hand].valid && now.hands[side].valid;
+  }
   std::optional<momentum::PostureCom> posture;
   if (options_.use_posture && now.both_hands()) posture = FindPosture(contacts.feet, points, now);
   now.momentum = estimator_->Advance(contacts, posture);
@@ -191,7 +196,12 @@ momentum::PostureCom BestEstimate::FindPosture(const Feet& feet, const JointPoin
 void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& points) {
   pose::PoseTargets extra;
   if (!now.skeleton()) AddJointTargets(points, now.joints, extra);
-  AddTurnTargets(*model_, now.turns, options_.best, extra);
+  BodyTurns turns = now.turns;
+  // How hands turn shows the forearms; what the prior makes of it for the trunk misleads the
+  // height.
+  for (const BodySite hand : {BodySite::kLeftHand, BodySite::kRightHand})
+    turns[static_cast<std::size_t>(hand)].valid = false;
+  AddTurnTargets(*model_, turns, options_.best, extra);
   MoveOrigin(origin_m_, extra);
   for (int i = 0; i < extra.count; ++i) targets_.Add(extra.points[static_cast<std::size_t>(i)]);
 }
@@ -436,14 +446,25 @@ void AddTurnTargets(const SubjectModel& model, const BodyTurns& turns, const Bes
     if (joint < 0) continue;  // This skeleton has none.
     const Eigen::Matrix3d R_JW =
         (turned.turn_W * model.t_pose_at.R_WJ[static_cast<std::size_t>(joint)]).transpose();
-    const auto add = [&](const Eigen::Vector3d& way_W, const Eigen::Vector3d& sd_m) {
-      targets.Add({joint, kSegmentM * (R_JW * way_W), kSegmentM * way_W, sd_m, joint});
-    };
-    const double lean_m = kSegmentM * std::hypot(turned.inclination_sd_rad, best.segment_sd_rad);
-    const double turn_m = kSegmentM * std::hypot(turned.heading_sd_rad, best.segment_sd_rad);
-    add(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(lean_m));
+    const double own_rad =
+        IsHand(static_cast<BodySite>(site)) ? best.hand_turn_sd_rad : best.segment_sd_rad;
+    const double lean_m = kSegmentM * std::hypot(turned.inclination_sd_rad, own_rad);
+    const double turn_m = kSegmentM * std::hypot(turned.heading_sd_rad, own_rad);
+    // A device whose heading is off shows a bend to another side than where it goes: the error is
+    // across the bend, and the larger the deeper it is.
+    const Eigen::Vector3d up_W = turned.turn_W.col(2);
+    const Eigen::Vector2d across_m =
+        kSegmentM * turned.heading_sd_rad * Eigen::Vector2d(up_W.y(), -up_W.x());
+    const Eigen::Vector3d sd_m(std::hypot(lean_m, across_m.x()), std::hypot(lean_m, across_m.y()),
+                               lean_m);
+    targets.Add({joint, kSegmentM * R_JW.col(2), kSegmentM * Eigen::Vector3d::UnitZ(), sd_m, joint,
+                 pose::WhiteningOf(sd_m, {across_m.x() * across_m.y(), 0, 0})});
     // How far it points up is the inclination's, which the first one has.
-    add(Eigen::Vector3d::UnitX(), {turn_m, turn_m, kUnknownSdM});
+    targets.Add({joint,
+                 kSegmentM * R_JW.col(0),
+                 kSegmentM * Eigen::Vector3d::UnitX(),
+                 {turn_m, turn_m, kUnknownSdM},
+                 joint});
   }
 }
 

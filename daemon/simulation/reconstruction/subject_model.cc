@@ -185,6 +185,32 @@ pose::GaussNewtonOptions BasisSolverOptions(const Options& options) {
   return solver;
 }
 
+arms::SquatTurn SquatTurnOf(BodySite site) {
+  // Means and spreads over five people's squats (docs/evaluation/pose.md): knees go outwards with
+  // the toes, and shanks more so than thighs.
+  constexpr double kThigh = 0.14, kThighSd = 0.16, kShank = 0.28, kShankSd = 0.24, kHeadSd = 0.2,
+                   kGripSd = 0.1;
+  switch (site) {
+    case BodySite::kPelvis:
+    case BodySite::kChest:
+      return {};
+    case BodySite::kHead:
+      return {1, 0, kHeadSd};
+    case BodySite::kLeftThigh:
+      return {-1, kThigh, kThighSd};
+    case BodySite::kRightThigh:
+      return {-1, -kThigh, kThighSd};
+    case BodySite::kLeftShank:
+      return {1, kShank, kShankSd};
+    case BodySite::kRightShank:
+      return {1, -kShank, kShankSd};
+    case BodySite::kLeftHand:
+    case BodySite::kRightHand:
+      return {0, 0, kGripSd};
+  }
+  return {};
+}
+
 body::Landmark JointOf(BodySite site) {
   switch (site) {
     case BodySite::kPelvis:
@@ -201,6 +227,10 @@ body::Landmark JointOf(BodySite site) {
       return body::Landmark::kLeftKnee;
     case BodySite::kRightShank:
       return body::Landmark::kRightKnee;
+    case BodySite::kLeftHand:
+      return body::Landmark::kLeftWrist;
+    case BodySite::kRightHand:
+      return body::Landmark::kRightWrist;
   }
   return body::Landmark::kHips;
 }

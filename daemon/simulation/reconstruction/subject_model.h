@@ -90,7 +90,8 @@ using HandInput = PointInput;   ///< Middle of the fist (body::Fist).
 using JointInput = PointInput;  ///< A joint of a skeleton (body::SkeletonPoints).
 using JointInputs = std::array<JointInput, stream::kBodyJoints>;  ///< By body::IndexOf.
 
-/// Segments that may wear an inertial sensor, beside hands and arms.
+/// Segments that may wear an inertial sensor, beside arms. Hands come last: theirs is what they
+/// hold, and it counts where a tracker sees the hand, too.
 enum class BodySite {
   kPelvis,  ///< On a belt.
   kChest,
@@ -99,12 +100,18 @@ enum class BodySite {
   kRightThigh,
   kLeftShank,
   kRightShank,
+  kLeftHand,
+  kRightHand,
 };
-inline constexpr std::size_t kBodySites = 7;
+inline constexpr std::size_t kBodySites = 9;
 inline constexpr std::array<const char*, kBodySites> kBodySiteNames = {
-    "pelvis", "chest", "head", "left_thigh", "right_thigh", "left_shank", "right_shank"};
+    "pelvis",     "chest",       "head",      "left_thigh", "right_thigh",
+    "left_shank", "right_shank", "left_hand", "right_hand"};
+inline constexpr bool IsHand(BodySite site) { return site >= BodySite::kLeftHand; }
 /// The joint whose frame a segment turns with.
 body::Landmark JointOf(BodySite site);
+/// How a segment turns in a squat.
+arms::SquatTurn SquatTurnOf(BodySite site);
 /// How each segment has turned since the T-pose; by BodySite.
 using BodyTurns = std::array<arms::HandState, kBodySites>;
 
@@ -158,6 +165,7 @@ struct BestConstants {
   /// Standard deviation of a worn sensor on its bone, about each axis, beside what the attitude
   /// says: soft tissue and the way the segment was held in the T-pose, which last for many frames.
   double segment_sd_rad = 0.1;
+  double hand_turn_sd_rad = 0.2;  ///< The same of a hand, whose wrist bends as it takes hold.
   /// Standard deviation of the pelvis's tilt between trunk and thighs that stay, beside what is
   /// learned: which tilt a skeleton has in a squat differs between laboratories (docs/pose.md).
   double pelvis_sd_rad = 0.2;
@@ -171,8 +179,8 @@ struct BestConstants {
   double regressed_prior_weight = 0.6;  ///< The same about the regression's pose.
   double regressed_smooth_weight = 1;
   /// Factor on the deviations of the linearised terms, whose errors persist for many frames.
-  double spread = 1.4;
-  double arm_joint_spread = 1.15;  ///< The same from the shoulders down: hands are measured.
+  double spread = 1.3;
+  double arm_joint_spread = 1.05;  ///< The same from the shoulders down: hands are measured.
   double com_spread = 1.75;        ///< The same for the height of the COM.
   /// Weight of what is known of people in the deviations of angles: upright, and with knees bent by
   /// kDeepBendRad or more, between them by the bend. Skeletons of laboratories and people's ways of

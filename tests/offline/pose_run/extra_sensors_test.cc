@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <vector>
 
 #include "common/body/kinematics.h"
 #include "common/body/skeleton_points.h"
@@ -71,6 +72,32 @@ TEST(ExtraSensors, AHeadsErrorsAreThoseItReports) {
   EXPECT_NEAR(run.frames[0].inputs.joints[kHead].sd_m.x(), errors.noise_m, 1e-12);
 }
 
+TEST(ExtraSensors, MovesShowHowTheHandsHaveTurned) {
+  Settings settings;
+  settings.segments = {reconstruction::BodySite::kLeftHand, reconstruction::BodySite::kRightHand};
+  const PoseRun run = RunPose(Turning(4), settings, "turning").value();
+  EXPECT_TRUE(run.headings.empty()) << "no squat shows their heading";
+  body::Kinematics at(run.body.skeleton), before(run.body.skeleton);
+  body::ComputeKinematics(run.body.skeleton, run.frames.front().q, before);
+  for (const auto site : settings.segments) {
+    const auto joint = static_cast<std::size_t>(run.body.landmarks[reconstruction::JointOf(site)]);
+    double worst_rad = 0, mean_rad = 0;
+    for (std::size_t i = run.judged_from; i < run.frames.size(); ++i) {
+      const arms::HandState& turn = run.frames[i].inputs.turns[static_cast<std::size_t>(site)];
+      ASSERT_TRUE(turn.valid) << i;
+      body::ComputeKinematics(run.body.skeleton, run.frames[i].q, at);
+      const Eigen::Matrix3d off = turn.turn_W * before.R_WJ[joint] * at.R_WJ[joint].transpose();
+      const double off_rad = Eigen::AngleAxisd(off).angle();
+      worst_rad = std::max(worst_rad, off_rad);
+      mean_rad += off_rad / static_cast<double>(run.frames.size() - run.judged_from);
+    }
+    // The grip, the bent wrist of the T-pose and the slip, each of 0.05 to 0.1 about an axis.
+    EXPECT_LT(worst_rad, 0.7);
+    EXPECT_GT(mean_rad, 0.03) << "nobody holds it perfectly";
+    EXPECT_LT(mean_rad, 0.4);
+  }
+}
+
 TEST(ExtraSensors, AKinectShowsTheHeadLateAndLessSurely) {
   const PoseRun run = RunOf(HeadDevice::kKinect, false);
   EXPECT_FALSE(run.frames[3].inputs.joints[kHead].valid);  // 67 ms are 4 frames.
@@ -100,6 +127,38 @@ TEST(ExtraSensors, ABeltShowsHowThePelvisHasTurnedSinceTheTPose) {
   EXPECT_LT(rms_rad, 0.13);
   EXPECT_GT(sd, run.frames[run.judged_from].inputs.turns[0].heading_sd_rad)
       << "nothing corrects it";
+}
+
+TEST(ExtraSensors, StateHowWellASquatHasShownWhichWayTheyFace) {
+  const auto scene = Stage(Standing(1), {}, "standing");
+  ASSERT_TRUE(scene.ok());
+  using reconstruction::BodySite;
+  const std::vector<BodySite> sites{BodySite::kPelvis, BodySite::kLeftThigh, BodySite::kRightShank};
+  std::vector<double> nees(sites.size());
+  constexpr int kSeeds = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const ExtraSensors extra(*scene, HeadDevice::kNone, sites, true, seed, 1 / 60.0);
+    const auto headings = extra.headings();
+    ASSERT_EQ(headings.size(), sites.size());
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      ASSERT_TRUE(headings[i].known) << i;
+      nees[i] += std::pow(headings[i].error_rad / headings[i].sd_rad, 2) / kSeeds;
+    }
+  }
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    EXPECT_GT(nees[i], 0.3) << i;
+    EXPECT_LT(nees[i], 1.8) << i;
+  }
+}
+
+TEST(ExtraSensors, WithoutASquatTheyDoNotKnowWhichWayTheyFace) {
+  Settings settings;
+  settings.segments = {reconstruction::BodySite::kPelvis};
+  settings.squat_before = false;
+  const PoseRun run = RunPose(Turning(4), settings, "turning").value();
+  for (const Frame& frame : run.frames) ASSERT_FALSE(frame.inputs.turns[0].valid);
+  ASSERT_EQ(run.headings.size(), 1u);
+  EXPECT_FALSE(run.headings[0].known);
 }
 
 }  // namespace

@@ -39,6 +39,31 @@ struct Scene {
 constexpr double kFrameS = 1.0 / 60;
 constexpr double kDegree = 0.017453292519943295;
 
+/// How fast the foothold of a slow step moves ahead shortly before its foot touches down, m/s.
+double FootholdSpeed(double foresight) {
+  Scene scene;
+  scene.gains.walking.swing_time_s = 0.52;
+  scene.gains.style.foresight = foresight;
+  const biped::GaitCommand walk{.gait = Gait::kWalk, .speed_mps = 0.7};
+  scene.Run(walk, 6);
+  const auto late = [&scene] {
+    return scene.memory.walking == WalkingPhase::kFall &&
+           scene.time_s - scene.memory.phase_start_s > 0.4;
+  };
+  for (int i = 0; i < 2000 && !late(); ++i) scene.Run(walk, scene.world.step_s());
+  const double before_m = scene.memory.foothold_W_m.x();
+  constexpr double kSeconds = 0.05;
+  scene.Run(walk, kSeconds);
+  EXPECT_TRUE(late());
+  EXPECT_FALSE(scene.fell);
+  return (scene.memory.foothold_W_m.x() - before_m) / kSeconds;
+}
+
+TEST(WalkingFoothold, IsForeseenInASlowStepSoThatTheFootLandsNearlyAtRest) {
+  EXPECT_GT(FootholdSpeed(0), 0.9);
+  EXPECT_LT(FootholdSpeed(1), 0.6 * FootholdSpeed(0));
+}
+
 /// Difference that a command makes to the body after `seconds`: pitch, and height.
 struct Answer {
   double pitch_rad, height_m;

@@ -274,16 +274,26 @@ TEST(HandAttitude, LeavesOutWhatIsNotFinite) {
 /// A segment that rests in the T-pose, then turns about W's axes: its device at any angle.
 class SegmentDevice {
  public:
-  SegmentDevice(double squats, const Eigen::Matrix3d& R_JS) : attitude(squats), R_JS_(R_JS) {}
+  SegmentDevice(const SquatTurn& turn, const Eigen::Matrix3d& R_JS) : attitude(turn), R_JS_(R_JS) {}
 
   void Rest(double seconds) { Turn(Vector3d::Zero(), seconds); }
   /// At this rate about axes of W.
-  void Turn(const Vector3d& rate_W_radps, double seconds) {
+  void Turn(const Vector3d& rate_W_radps, double seconds, bool squats = false) {
     for (int i = 0; i < std::lround(seconds / kTickS); ++i) {
       const Eigen::Matrix3d R_SW = (R_WJ * R_JS_).transpose();
-      attitude.Advance({R_SW * kUp, R_SW * rate_W_radps + Vector3d(0.02, -0.01, 0.015)}, kTickS);
+      attitude.Advance({R_SW * kUp, R_SW * rate_W_radps + Vector3d(0.02, -0.01, 0.015)}, kTickS,
+                       squats);
       R_WJ = Turned(kTickS * rate_W_radps) * R_WJ;
     }
+  }
+  /// Down, this deep, and up: its way ahead, or back, is so far to the left.
+  void Squat(double about_left, double deep_rad, double to_left_rad) {
+    constexpr double kDownS = 1.5;
+    const Vector3d way =
+        about_left * deep_rad / kDownS * Vector3d(-std::sin(to_left_rad), std::cos(to_left_rad), 0);
+    Turn(way, kDownS, true);
+    Rest(0.3);
+    Turn(-way, kDownS, true);
   }
   double ErrorDeg() const {
     const Eigen::AngleAxisd off(attitude.state().turn_W * R_WJ.transpose());
@@ -301,15 +311,13 @@ TEST(SegmentAttitude, TheFirstSquatShowsWhichWayADeviceAtAnyAngleFaces) {
   noise::Random random(5);
   for (int trial = 0; trial < 40; ++trial) {
     const Eigen::Matrix3d R_JS = Turned(noise::NormalVector(2, random));
-    const double squats = trial % 2 == 0 ? 1 : -1;
-    SegmentDevice device(squats, R_JS);
+    const SquatTurn turn{trial % 2 == 0 ? 1.0 : -1.0, trial % 3 * 0.2};
+    SegmentDevice device(turn, R_JS);
     device.Rest(4);
     device.attitude.Align();
     device.Rest(1);
     EXPECT_FALSE(device.attitude.state().valid) << "which way it faces is not known yet";
-    device.Turn({0, squats * 0.7, 0}, 1.5);  // Down,
-    device.Rest(0.3);
-    device.Turn({0, -squats * 0.7, 0}, 1.5);  // and up.
+    device.Squat(turn.about_left, 1, turn.to_left_rad);
     ASSERT_TRUE(device.attitude.state().valid) << trial;
     device.Turn({0, 0, 0.5}, 1.2);
     device.Turn({0.6, 0, 0}, 1);
@@ -318,28 +326,98 @@ TEST(SegmentAttitude, TheFirstSquatShowsWhichWayADeviceAtAnyAngleFaces) {
   }
 }
 
-TEST(SegmentAttitude, StandingAndTurningOnTheSpotShowNoHeading) {
-  SegmentDevice device(1, Eigen::Matrix3d::Identity());
+TEST(SegmentAttitude, WhatAHandHoldsNeedsNoSquat) {
+  const SquatTurn in_fist{0, 0, 0.1};
+  SegmentDevice device(in_fist, Turned({0.3, 0, 0}));
+  device.Rest(4);
+  device.attitude.Align();
+  device.Turn({0, 0, 0.5}, 1.2);
+  device.Turn({0.6, 0, 0}, 1);
+  ASSERT_TRUE(device.attitude.state().valid);
+  EXPECT_LT(device.ErrorDeg(), 2.5);
+  EXPECT_GT(device.attitude.state().heading_sd_rad, 0.1) << "as far as a grip is off";
+}
+
+TEST(SegmentAttitude, StatesHowWellASquatShowedItsHeading) {
+  const SquatTurn turn{-1, 0.14, 0.16};
+  for (const double deep_rad : {0.25, 0.5, 1.2}) {
+    double nees = 0;
+    constexpr int kTrials = 20;
+    for (int seed = 1; seed <= kTrials; ++seed) {
+      noise::Random random(seed);
+      const Eigen::Matrix3d R_JS = Turned(noise::NormalVector(2, random));
+      SegmentDevice device(turn, R_JS);
+      device.Rest(4);
+      device.attitude.Align();
+      // Who squats differs from the mean, and leans to a side.
+      const double way_rad = turn.to_left_rad + turn.sd_rad * random.Normal() +
+                             std::atan2(0.05 * random.Normal(), deep_rad);
+      device.Squat(turn.about_left, deep_rad, way_rad);
+      ASSERT_TRUE(device.attitude.state().valid) << deep_rad;
+      const Vector3d ahead_W = R_JS.col(0);  // The device's x in the T-pose.
+      const double off_rad = std::remainder(
+          device.attitude.heading_rad() - std::atan2(ahead_W.y(), ahead_W.x()), 2 * kPi);
+      nees += std::pow(off_rad / device.attitude.mounting_sd_rad(), 2) / kTrials;
+    }
+    EXPECT_GT(nees, 0.4) << deep_rad;
+    EXPECT_LT(nees, 1.7) << deep_rad;
+  }
+}
+
+TEST(SegmentAttitude, ADeeperSquatShowsItMoreSurely) {
+  SegmentDevice device({}, Eigen::Matrix3d::Identity());
+  device.Rest(4);
+  device.attitude.Align();
+  device.Squat(1, 0.25, 0);
+  ASSERT_TRUE(device.attitude.state().valid);
+  const double shallow_rad = device.attitude.mounting_sd_rad();
+  EXPECT_GT(shallow_rad, 0.3);
+  device.Squat(1, 0.9, 0);
+  EXPECT_LT(device.attitude.mounting_sd_rad(), 0.6 * shallow_rad);
+  device.Squat(1, 0.9, 0);
+  EXPECT_GT(device.attitude.mounting_sd_rad(), SquatTurn{}.sd_rad) << "people differ";
+}
+
+TEST(SegmentAttitude, OnlyASquatShowsAHeading) {
+  SegmentDevice device({}, Eigen::Matrix3d::Identity());
   device.Rest(4);
   device.attitude.Align();
   for (int i = 0; i < 10; ++i) {
     device.Turn({0, 0, 1}, 1);
-    device.Turn({0.2, 0, 0}, 1);  // Sways by less than a squat.
-    device.Turn({-0.2, 0, 0}, 1);
+    device.Turn({0.6, 0, 0}, 1);  // To a side, and back.
+    device.Turn({-0.6, 0, 0}, 1);
+    device.Turn({0.1, 0, 0}, 1, true);  // A bend that shows nothing.
+    device.Turn({-0.1, 0, 0}, 1, true);
   }
+  EXPECT_FALSE(device.attitude.state().valid);
+}
+
+TEST(SegmentAttitude, BendsThatContradictEachOtherShowNone) {
+  SegmentDevice device({}, Eigen::Matrix3d::Identity());
+  device.Rest(4);
+  device.attitude.Align();
+  device.Squat(1, 0.5, 0);
+  ASSERT_TRUE(device.attitude.state().valid);
+  device.Squat(1, 0.5, 2);
   EXPECT_FALSE(device.attitude.state().valid);
 }
 
 TEST(SegmentAttitude, ADeviceThatPointsUpIsAlignedToo) {
   Eigen::Matrix3d R_JS;  // Its x is up.
   R_JS << 0, 0, -1, 0, 1, 0, 1, 0, 0;
-  SegmentDevice device(1, R_JS);
+  SegmentDevice device({}, R_JS);
   device.Rest(4);
   device.attitude.Align();
-  device.Turn({0, 0.8, 0}, 1.5);
-  device.Turn({0, -0.8, 0}, 1.5);
+  device.Squat(1, 1.2, 0);
   ASSERT_TRUE(device.attitude.state().valid);
   EXPECT_LT(device.ErrorDeg(), 2);
+}
+
+TEST(IsSquat, NeedsBothFeetAndALowerCentreOfMass) {
+  EXPECT_TRUE(IsSquat(0.8, 1, 300, 300));
+  EXPECT_FALSE(IsSquat(0.97, 1, 300, 300)) << "stands";
+  EXPECT_FALSE(IsSquat(0.8, 1, 600, 20)) << "on one leg";
+  EXPECT_FALSE(IsSquat(0.8, 1, 0, 0)) << "in the air";
 }
 
 }  // namespace

@@ -213,6 +213,95 @@ TEST_F(StrappedArmTest, NeedsBothStrapsAndNoModel) {
   EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kAwaitsTPose);
 }
 
+/// A device on a belt, its front ahead, whose wearer bends ahead.
+struct BeltTest : testing::Test {
+  static constexpr std::uint32_t kBelt = 21;
+
+  BeltTest() {
+    segments.Bind(reconstruction::BodySite::kPelvis, kBelt);
+    body.valid = true;
+    body.p_WC_m.z() = 1;
+    for (auto& foot : body.feet) foot.load_n = 350;
+  }
+  void Run(double seconds, double bend_radps) {
+    for (double t_s = 0; t_s < seconds - 1e-9; t_s += kPeriodS) {
+      now_ns += SecondsToNanoseconds(kPeriodS);
+      bent_rad += bend_radps * kPeriodS;
+      stream::MotionSample sample;
+      sample.device = kBelt;
+      sample.sampled_ns = now_ns;
+      // S is x left, y front, z down.
+      sample.specific_force_mps2 =
+          -kStandardGravityMps2 * Eigen::Vector3d(0, std::sin(bent_rad), std::cos(bent_rad));
+      sample.has_angular_velocity = true;
+      sample.angular_velocity_radps = {bend_radps, 0, 0};
+      segments.Take(sample, now_ns);
+      segments.Report(now_ns, inputs);
+    }
+  }
+  /// Down and up, with the centre of mass this high.
+  void Bend(double com_height_m) {
+    body.p_WC_m.z() = com_height_m;
+    segments.Follow(true, 1, body);
+    Run(1, 0.5);
+    Run(1, -0.5);
+    body.p_WC_m.z() = 1;
+    segments.Follow(true, 1, body);
+  }
+
+  double bent_rad = 0;
+  std::int64_t now_ns = 50'000'000'000;
+  momentum::Estimate body;
+  PoseSegments segments;
+  PoseInputs inputs;
+};
+
+TEST_F(BeltTest, KnowsWhichWayItFacesAfterASquat) {
+  segments.Follow(false, 0, body);
+  Run(5, 0);
+  segments.Follow(true, 1, body);
+  Run(1, 0);
+  EXPECT_TRUE(inputs.turn_awaits[0]);
+  Bend(0.98);
+  EXPECT_TRUE(inputs.turn_awaits[0]) << "a bend of somebody who stands";
+  EXPECT_FALSE(inputs.sensors.turns[0].valid);
+  Bend(0.8);
+  EXPECT_FALSE(inputs.turn_awaits[0]);
+  Run(1, 0.5);
+  const arms::HandState& turn = inputs.sensors.turns[0];
+  ASSERT_TRUE(turn.valid);
+  EXPECT_LT((turn.turn_W.col(2) - Eigen::Vector3d(std::sin(0.5), 0, std::cos(0.5))).norm(), 0.05);
+  EXPECT_GT(turn.heading_sd_rad, 0.15);
+  EXPECT_LT(turn.heading_sd_rad, 0.35);
+}
+
+TEST_F(BeltTest, AMoveInAHandCountsFromTheTPoseOn) {
+  constexpr auto kHand = static_cast<std::size_t>(reconstruction::BodySite::kLeftHand);
+  segments.Bind(reconstruction::BodySite::kPelvis, std::nullopt);
+  segments.Bind(reconstruction::BodySite::kLeftHand, kBelt);
+  segments.Follow(false, 0, body);
+  Run(5, 0);
+  segments.Follow(true, 1, body);
+  Run(1, 0.5);
+  ASSERT_TRUE(inputs.sensors.turns[kHand].valid);
+  EXPECT_LT(
+      (inputs.sensors.turns[kHand].turn_W.col(2) - Eigen::Vector3d(std::sin(0.5), 0, std::cos(0.5)))
+          .norm(),
+      0.05);
+}
+
+TEST_F(BeltTest, AnotherTPoseNeedsAnotherSquat) {
+  Run(5, 0);
+  segments.Follow(true, 1, body);
+  Bend(0.8);
+  EXPECT_TRUE(inputs.sensors.turns[0].valid);
+  segments.Follow(false, 0, body);
+  Run(5, 0);
+  segments.Follow(true, 1, body);
+  Run(1, 0);
+  EXPECT_FALSE(inputs.sensors.turns[0].valid);
+}
+
 constexpr std::int64_t kStartNs = 5'000'000'000;
 
 struct PoseSensorsTest : testing::Test {

@@ -81,6 +81,24 @@ TEST_F(BodyTurnTest, WhatIsNoTurnIsNotUsed) {
   EXPECT_FALSE(UsableTurns(BeltAt(Eigen::Matrix3d::Identity(), kNaN))[0].valid);
 }
 
+TEST_F(BodyTurnTest, AHandThatIsNotSeenIsNotAskedToTurn) {
+  const Reconstruction free = world.FreelyMade();
+  Reconstruction with = free, without = free, seen = free;
+  for (std::size_t i = 0; i < 560; ++i) {
+    Inputs inputs = world.inputs[i], turned = inputs, hidden = inputs;
+    turned.turns = TurnAt(BodySite::kLeftHand, About(Eigen::Vector3d::UnitX(), 1));
+    seen.Advance(turned);
+    hidden.hands[0].valid = false;
+    without.Advance(hidden);
+    hidden.turns = turned.turns;
+    with.Advance(hidden);
+    ASSERT_TRUE(Finite(seen.output())) << i;
+    ASSERT_EQ(with.output().R_WJ[0], without.output().R_WJ[0]) << i;
+  }
+  const auto hand = static_cast<std::size_t>(model.fists[0].joint);
+  EXPECT_GT((seen.output().R_WJ[hand] - without.output().R_WJ[hand]).norm(), 0.2);
+}
+
 TEST_F(BodyTurnTest, ThePelvisFollowsTheBelt) {
   const Reconstruction free = world.FreelyMade();
   Reconstruction with = free, without = free;
@@ -114,7 +132,25 @@ TEST_F(BodyTurnTest, EachSegmentAsksForItsOwnJoint) {
       EXPECT_EQ(target.joint, joint);
       EXPECT_LT((R_WJ * target.p_J_m - target.p_W_m).norm(), 1e-12) << kBodySiteNames[site];
     }
-    EXPECT_GT(targets.points[1].sd_m.y(), 5 * targets.points[0].sd_m.y()) << "the heading drifts";
+    EXPECT_GT(targets.points[1].sd_m.x(), 2 * targets.points[0].sd_m.x()) << "the heading drifts";
+  }
+}
+
+TEST_F(BodyTurnTest, ABendToAnotherSideCostsWhatTheHeadingsDeviationSays) {
+  constexpr double kOffRad = 0.1, kHeadingSd = 0.3, kBentRad = 1;
+  const Eigen::Matrix3d off = About(Eigen::Vector3d::UnitZ(), kOffRad);
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.6, -0.8, 0)}) {
+    const Eigen::Matrix3d turn = About(axis, kBentRad), shown = off * turn * off.transpose();
+    const double across_rad = kOffRad * std::sin(kBentRad);
+    const double sure = Cost(BeltAt(shown), turn), unsure = Cost(BeltAt(shown, kHeadingSd), turn);
+    EXPECT_GT(sure, 0.8 * std::pow(across_rad / BestConstants{}.segment_sd_rad, 2)) << axis;
+    EXPECT_LT(unsure, 2 * std::pow(kOffRad / kHeadingSd, 2)) << axis;
+    // A bend further than shown costs as much as ever.
+    const Eigen::Matrix3d deeper = About(axis, kBentRad + kOffRad);
+    EXPECT_GT(Cost(BeltAt(turn, kHeadingSd), deeper),
+              0.8 * std::pow(kOffRad / BestConstants{}.segment_sd_rad, 2))
+        << axis;
   }
 }
 
