@@ -63,7 +63,8 @@ Vector3d Aimed(const Context& context, const GaitMemory& memory, const Pendulum&
 
 double AimsAhead(const Context& context, const GaitMemory& memory) {
   const double slow = (StepTime(context, memory) - kQuickStepS) / (kSlowStepS - kQuickStepS);
-  return kAimsAhead * context.gains.style.foresight * std::clamp(slow, 0.0, 1.0);
+  return kAimsAhead * context.gains.style.foresight * memory.style.share *
+         std::clamp(slow, 0.0, 1.0);
 }
 
 WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& memory) {
@@ -163,6 +164,10 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const Vector3d tow_H =
       ToHeading(memory.heading_rad, TowOffset(memory, memory.pit.last_hop.touchdown_height_m));
   ahead_m += tow_H.x();
+  // A tow that begins in flight would put the foot so far ahead that the body is too low for it.
+  if (tow_H.x() > 0) {
+    ahead_m = std::min(ahead_m, std::max(context.gains.tow.reach_m, kBrakingReachS * v_H.x()));
+  }
   const double left_m =
       aside_m + biped::Side(leg) * spacing_m + TurningOffset(context, memory, v_H.x()) + tow_H.y();
   return ToWorld(

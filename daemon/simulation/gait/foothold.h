@@ -33,8 +33,8 @@ struct WalkingFoothold {
 /// w and phi_o follows from v_d and T. Sideways the same with the step width in v_d's place.
 WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& memory);
 
-/// Part of the time to touchdown that the foothold of the present step is foreseen; 0 in a quick
-/// step, and without style.
+/// Part of the time to touchdown that the foothold of the present step is foreseen: as far as
+/// the walk is regular, which it is not before a pit or after a push (style.h); 0 in a quick step.
 double AimsAhead(const Context& context, const GaitMemory& memory);
 
 /// Equation (2), phi_R_d = v T / 2 + k_R (v_d - v) with k_R < 0 for an offset ahead of the COM:

@@ -44,6 +44,7 @@ double FootholdSpeed(double foresight) {
   Scene scene;
   scene.gains.walking.swing_time_s = 0.52;
   scene.gains.style.foresight = foresight;
+  scene.memory.style.share = 1;
   const biped::GaitCommand walk{.gait = Gait::kWalk, .speed_mps = 0.7};
   scene.Run(walk, 6);
   const auto late = [&scene] {
