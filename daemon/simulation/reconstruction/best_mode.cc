@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "common/base/units.h"
 #include "common/body/kinematics.h"
 #include "daemon/simulation/reconstruction/pose_targets.h"
@@ -162,6 +164,25 @@ void DoubtUnloaded(double mass_kg, Measurement& then) {
   momentum.position_variance_m2.head<2>() += (unloaded * apart_m).cwiseAbs2();
 }
 
+/// A hand that has turned far from where the last pose has it counts less, the less the further, as
+/// GateJoints has it: a pose that is wrong about an arm would be pulled into another wrong one.
+BodyTurns WithFarHandsDoubted(const SubjectModel& model, const body::Kinematics& at,
+                              BodyTurns turns) {
+  constexpr double kNearRad = 0.3, kDoubt = 2;
+  for (const BodySite hand : {BodySite::kLeftHand, BodySite::kRightHand}) {
+    const int joint = model.body.landmarks[JointOf(hand)];
+    if (joint < 0) continue;
+    arms::HandState& turn = turns[static_cast<std::size_t>(hand)];
+    const auto index = static_cast<std::size_t>(joint);
+    const Eigen::Matrix3d off =
+        turn.turn_W * model.t_pose_at.R_WJ[index] * at.R_WJ[index].transpose();
+    const double far_rad = kDoubt * std::max(0.0, Eigen::AngleAxisd(off).angle() - kNearRad);
+    turn.heading_sd_rad = std::hypot(turn.heading_sd_rad, far_rad);
+    turn.inclination_sd_rad = std::hypot(turn.inclination_sd_rad, far_rad);
+  }
+  return turns;
+}
+
 }  // namespace
 
 BestMode::BestMode(const SubjectModel& model, const Options& options)
@@ -254,7 +275,8 @@ void BestMode::SetTargets(const Measurement& then, const Truth& truth, const Out
   }
   // After the feet, whose places are the first targets of their joints.
   AddJointTargets(PointsOf(then.joints), then.joints, state_.targets);
-  AddTurnTargets(*state_.model, then.turns, state_.options.best, state_.targets);
+  AddTurnTargets(*state_.model, WithFarHandsDoubted(*state_.model, state_.pose.at, then.turns),
+                 state_.options.best, state_.targets);
   SetMomentumTargets(*state_.model, then, output.mass_kg, state_.options, state_.targets);
   OverrideMomentumTargets(truth, state_.options, state_.targets);
   state_.MoveTargets();
