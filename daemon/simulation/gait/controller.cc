@@ -469,10 +469,10 @@ void FollowGround(const Context& context, GaitMemory& memory) {
 /// same hip: a loop without delay, and with a gain near one. This smooths it.
 constexpr double kFootholdSmoothedS = 0.005;
 
-void LeadFoot(const Context& context, const Vector3d& foothold_W_m, GaitMemory& memory) {
-  const bool foresees = context.TimeIn(memory) > 0 && AimsAhead(context, memory) > 0;
-  const double kept = foresees ? kFootholdSmoothedS / (kFootholdSmoothedS + context.step_s) : 0;
-  memory.foothold_W_m = foothold_W_m + kept * (memory.foothold_W_m - foothold_W_m);
+void LeadFoot(const Context& context, const WalkingFoothold& foothold, GaitMemory& memory) {
+  const bool smooths = context.TimeIn(memory) > 0 && foothold.foreseen;
+  const double kept = smooths ? kFootholdSmoothedS / (kFootholdSmoothedS + context.step_s) : 0;
+  memory.foothold_W_m = foothold.p_WF_m + kept * (memory.foothold_W_m - foothold.p_WF_m);
 }
 
 }  // namespace
@@ -502,7 +502,7 @@ Targets AdvanceWalking(const Context& context, GaitMemory& memory) {
     memory.phase_start_s -= foresight * foothold.hurry * context.step_s;
     return WalkingTargets(context, memory);
   }
-  LeadFoot(context, foothold.p_WF_m, memory);
+  LeadFoot(context, foothold, memory);
   memory.walking_step.strides_to_pit = foothold.strides_to_pit;
   const bool swinging = context.TimeIn(memory) < SwingTime(context, memory);
   if (swinging) memory.phase_start_s -= foothold.hurry * context.step_s;

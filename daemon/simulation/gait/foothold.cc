@@ -46,11 +46,19 @@ Pendulum SupportPendulum(const Context& context, const GaitMemory& memory) {
   return {rate, growth * capture_H};
 }
 
+/// Part of the time to touchdown that the foothold of the present step is foreseen: as far as
+/// the walk is regular, which it is not before a pit or after a push (style.h); 0 in a quick step.
+double AimsAhead(const Context& context, const GaitMemory& memory) {
+  const double slow = (StepTime(context, memory) - kQuickStepS) / (kSlowStepS - kQuickStepS);
+  return kAimsAhead * context.gains.style.foresight * memory.style.share *
+         std::clamp(slow, 0.0, 1.0);
+}
+
 /// Where a foot is led that is to touch down nearly at rest: as the capture point moves away from
 /// the supporting foot, towards where it will be. A leg that lands at rest takes no momentum from
 /// the body, so it stands further ahead by the way that its lower link would have cost.
-Vector3d Aimed(const Context& context, const GaitMemory& memory, const Pendulum& pendulum) {
-  const double share = AimsAhead(context, memory);
+Vector3d Aimed(const Context& context, const GaitMemory& memory, const Pendulum& pendulum,
+               double share) {
   if (share == 0) return pendulum.r_foot_to_capture_H;
   const double left_s = StepTime(context, memory) * (1 - StepPhase(context, memory));
   Vector3d aimed_H = std::exp(pendulum.rate_radps * share * left_s) * pendulum.r_foot_to_capture_H;
@@ -60,12 +68,6 @@ Vector3d Aimed(const Context& context, const GaitMemory& memory, const Pendulum&
 }
 
 }  // namespace
-
-double AimsAhead(const Context& context, const GaitMemory& memory) {
-  const double slow = (StepTime(context, memory) - kQuickStepS) / (kSlowStepS - kQuickStepS);
-  return kAimsAhead * context.gains.style.foresight * memory.style.share *
-         std::clamp(slow, 0.0, 1.0);
-}
 
 WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& memory) {
   const WalkingGains& gains = context.gains.walking;
@@ -79,11 +81,13 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const double aside_m = side * gains.step_width_m / (1 + growth);
   // The offset belongs to the coming step, which goes along the turned heading.
   const Vector3d offset_H = ToWorld(context.goal.turn_per_step_rad, Vector3d(-back_m, aside_m, 0));
-  const Vector3d aimed_H = Aimed(context, memory, pendulum);
+  const double ahead = AimsAhead(context, memory);
+  const Vector3d aimed_H = Aimed(context, memory, pendulum, ahead);
   const double natural_m = aimed_H.x() + offset_H.x() + memory.speed.integrators.walk_m;
   const double outward_m = side * (aimed_H.y() + offset_H.y());
 
   WalkingFoothold foothold;
+  foothold.foreseen = ahead > 0;
   // The capture point moves away from the foot until touchdown.
   const double foreseen_s =
       context.gains.style.foresight * step_time_s * (1 - StepPhase(context, memory));

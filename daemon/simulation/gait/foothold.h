@@ -25,6 +25,7 @@ struct WalkingFoothold {
   double hurry = 0;     ///< Fraction by which the swing clock should gain.
   double excess_m = 0;  ///< How far the foothold that balance wants is outside its box.
   std::optional<int> strides_to_pit;  ///< As in WalkingStep.
+  bool foreseen = false;              ///< Led to where it will be at touchdown, not where it is.
 };
 
 /// Equation (1), phi_W_d = phi_o + k_W (v_d - v), as a foothold relative to the supporting foot.
@@ -32,10 +33,6 @@ struct WalkingFoothold {
 /// v / w - v_d T / (e^(w T) - 1) ahead of the COM makes the next step end with v_d: so k_W is -1 /
 /// w and phi_o follows from v_d and T. Sideways the same with the step width in v_d's place.
 WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& memory);
-
-/// Part of the time to touchdown that the foothold of the present step is foreseen: as far as
-/// the walk is regular, which it is not before a pit or after a push (style.h); 0 in a quick step.
-double AimsAhead(const Context& context, const GaitMemory& memory);
 
 /// Equation (2), phi_R_d = v T / 2 + k_R (v_d - v) with k_R < 0 for an offset ahead of the COM:
 /// world, horizontal, relative to the COM. Both legs of a jump land beside each other.
