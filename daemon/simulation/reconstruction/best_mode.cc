@@ -169,13 +169,12 @@ void DoubtUnloaded(double mass_kg, Measurement& then) {
 BodyTurns WithFarHandsDoubted(const SubjectModel& model, const body::Kinematics& at,
                               BodyTurns turns) {
   constexpr double kNearRad = 0.3, kDoubt = 2;
-  for (const BodySite hand : {BodySite::kLeftHand, BodySite::kRightHand}) {
-    const int joint = model.body.landmarks[JointOf(hand)];
-    if (joint < 0) continue;
-    arms::HandState& turn = turns[static_cast<std::size_t>(hand)];
-    const auto index = static_cast<std::size_t>(joint);
+  for (std::size_t side = 0; side < kHands; ++side) {
+    arms::HandState& turn = TurnOfHand(turns, side);
+    if (!turn.valid) continue;
+    const auto joint = static_cast<std::size_t>(model.fists[side].joint);
     const Eigen::Matrix3d off =
-        turn.turn_W * model.t_pose_at.R_WJ[index] * at.R_WJ[index].transpose();
+        turn.turn_W * model.t_pose_at.R_WJ[joint] * at.R_WJ[joint].transpose();
     const double far_rad = kDoubt * std::max(0.0, Eigen::AngleAxisd(off).angle() - kNearRad);
     turn.heading_sd_rad = std::hypot(turn.heading_sd_rad, far_rad);
     turn.inclination_sd_rad = std::hypot(turn.inclination_sd_rad, far_rad);

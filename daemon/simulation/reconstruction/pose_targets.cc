@@ -94,6 +94,10 @@ BodyTurns UsableTurns(const BodyTurns& turns) {
   return usable;
 }
 
+arms::HandState& TurnOfHand(BodyTurns& turns, std::size_t side) {
+  return turns[static_cast<std::size_t>(BodySite::kLeftHand) + side];
+}
+
 BodyTurns FromStance(BodyTurns turns, const Stance& stance) {
   for (const auto& [site, foot] : {std::pair{BodySite::kLeftThigh, 0},
                                    {BodySite::kRightThigh, 1},
@@ -164,8 +168,7 @@ Measurement BestEstimate::Advance(const Inputs& inputs, const JointPoints& point
                   .turns = FromStance(UsableTurns(inputs.turns), stance_)};
   // Where no tracker sees a hand, the arm's estimate has what its device measures.
   for (std::size_t side = 0; side < kHands; ++side) {
-    const auto hand = static_cast<std::size_t>(BodySite::kLeftHand) + side;
-    now.turns[hand].valid = now.turns[hand].valid && now.hands[side].valid;
+    if (!now.hands[side].valid) TurnOfHand(now.turns, side).valid = false;
   }
   std::optional<momentum::PostureCom> posture;
   if (options_.use_posture && now.both_hands()) posture = FindPosture(contacts.feet, points, now);
@@ -199,8 +202,7 @@ void BestEstimate::AddExtraTargets(const Measurement& now, const JointPoints& po
   BodyTurns turns = now.turns;
   // How hands turn shows the forearms; what the prior makes of it for the trunk misleads the
   // height.
-  for (const BodySite hand : {BodySite::kLeftHand, BodySite::kRightHand})
-    turns[static_cast<std::size_t>(hand)].valid = false;
+  for (std::size_t side = 0; side < kHands; ++side) TurnOfHand(turns, side).valid = false;
   AddTurnTargets(*model_, turns, options_.best, extra);
   MoveOrigin(origin_m_, extra);
   for (int i = 0; i < extra.count; ++i) targets_.Add(extra.points[static_cast<std::size_t>(i)]);

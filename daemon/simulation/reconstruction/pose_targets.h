@@ -43,6 +43,8 @@ std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& h
 JointInputs UsableJoints(const JointInputs& joints, const Eigen::Vector3d& origin_m);
 std::array<arms::ArmEstimate, kHands> UsableArms(const std::array<arms::ArmEstimate, kHands>& arms);
 BodyTurns UsableTurns(const BodyTurns& turns);
+/// How a hand has turned, of side 0 (left) or 1.
+arms::HandState& TurnOfHand(BodyTurns& turns, std::size_t side);
 
 /// How each leg leans in the T-pose beyond the straight one of the model, W.
 using Stance = std::array<Eigen::Matrix3d, momentum::kFeet>;

@@ -132,7 +132,9 @@ TEST_F(BodyTurnTest, EachSegmentAsksForItsOwnJoint) {
       EXPECT_EQ(target.joint, joint);
       EXPECT_LT((R_WJ * target.p_J_m - target.p_W_m).norm(), 1e-12) << kBodySiteNames[site];
     }
-    EXPECT_GT(targets.points[1].sd_m.x(), 2 * targets.points[0].sd_m.x()) << "the heading drifts";
+    const double times = IsHand(where) ? 2 : 5;  // A hand's own deviation is larger.
+    EXPECT_GT(targets.points[1].sd_m.x(), times * targets.points[0].sd_m.x())
+        << "the heading drifts";
   }
 }
 
