@@ -144,7 +144,8 @@ Thrust ThrustOf(const Context& context, const GaitMemory& memory) {
               jumping ? 2 * gains.jump_leg_stiffness_n_per_m : gains.run_leg_stiffness_n_per_m,
           .mass_kg = context.biped.mass_kg(),
           .feet_kg = (jumping ? 2 : 1) * context.biped.link_mass_kg,
-          .loss_share = memory.pit.last_hop.loss_share};
+          .loss_share = memory.pit.last_hop.loss_share,
+          .bottom_mps = memory.pit.last_hop.bottom_mps};
 }
 
 /// Jumping's legs, drawn in, need time to come down again.
@@ -257,6 +258,7 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
   seen.lift_off_mps = 0;
   seen.leaping = seen.planned = false;
   last.bottom_height_m = FromFoot(context, memory).z();
+  last.bottom_mps = context.body.v_WC.z();
   LookForPit(context, memory);
   if (!seen.sighting.ahead) return;
   const PitGains& gains = context.gains.pit;

@@ -33,12 +33,18 @@ struct Hop {
 };
 
 /// The thrust: a spring under the body lifts it off, feet left behind until they are torn along.
-///   (1 - loss) k x^2 / 2 = (m - feet) g x + m / (m - feet) m v^2 / 2
+///   (1 - loss) k x^2 / 2 = (m - feet) g x + m / (m - feet) m u^2 / 2
+/// The leg is shortest while it slants, and the body passes over the foot during the thrust. It
+/// then rises or falls with `bottom_mps` already, and the lift-off speed is
+///   v = u + (a + b v) bottom_mps
+/// with a and b fitted to hops before pits of 2.5 m at 6 m/s. They missed the planned speed by 0.45
+/// m/s (root mean square) without this, and by 0.05 with it.
 struct Thrust {
   double stiffness_n_per_m = 0;
   double mass_kg = 0;
   double feet_kg = 0;
   double loss_share = 0;  ///< Lost part of the spring's energy.
+  double bottom_mps = 0;  ///< Vertical speed of the COM where the thrust begins.
 
   /// The compression x from which the lift-off speed v is reached.
   double ExtensionFor(double lift_off_mps) const;

@@ -140,7 +140,8 @@ struct HopMeasures {
   double extension_m = 0;    ///< Extension of the spring in this support; 0 when not known.
   double loss_share = 0.25;  ///< Lost part of the spring's energy.
   double extension_time_s = 0.09;
-  double bottom_height_m = 0;    ///< COM over the foot where the extension began.
+  double bottom_height_m = 0;    ///< COM over the foot where the extension began, ...
+  double bottom_mps = 0;         ///< ... and its vertical speed there.
   double rise_offset_m = -0.04;  ///< COM's rise until lift-off, less a share of the extension.
 };
 

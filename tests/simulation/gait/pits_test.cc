@@ -64,6 +64,22 @@ TEST(Thrust, StoresTheEnergyOfTheLiftOff) {
   EXPECT_NEAR(thrust.LossShare(x, 1.5), 0.25, 1e-12);
 }
 
+TEST(Thrust, IsStrongerUnderABodyThatFalls) {
+  Thrust thrust{.stiffness_n_per_m = 3500, .mass_kg = 13, .feet_kg = 1, .loss_share = 0.25};
+  const double level_m = thrust.ExtensionFor(1.5);
+  thrust.bottom_mps = -0.4;
+  const double falling_m = thrust.ExtensionFor(1.5);
+  // The spring gives 1.5 + (0.6 + 0.5 * 1.5) * 0.4 m/s.
+  const Thrust at_rest{.stiffness_n_per_m = 3500, .mass_kg = 13, .feet_kg = 1, .loss_share = 0.25};
+  EXPECT_NEAR(falling_m, at_rest.ExtensionFor(2.04), 1e-12);
+  EXPECT_GT(falling_m, level_m);
+  EXPECT_NEAR(thrust.LossShare(falling_m, 1.5), 0.25, 1e-12);
+  thrust.bottom_mps = 0.4;
+  EXPECT_LT(thrust.ExtensionFor(1.5), level_m);
+  thrust.bottom_mps = 5;  // It rises faster than it is to leave: the spring only bears the weight.
+  EXPECT_NEAR(thrust.ExtensionFor(1.5), 2 * 12 * kStandardGravityMps2 / (0.75 * 3500), 1e-12);
+}
+
 TEST(PitPlan, CrossesPitsFromAnyDistanceWithTheLastFootholdBeforeTheEdge) {
   const PitLimits limits;
   for (const double width_m : {0.2, 0.4, 1.0, 1.5}) {
