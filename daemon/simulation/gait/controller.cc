@@ -468,12 +468,11 @@ void FollowGround(const Context& context, GaitMemory& memory) {
 }
 
 /// A swinging hip accelerates the COM, which moves a foreseen foothold, whose rate is torque of the
-/// same hip: a loop without delay, and with a gain near one. This smooths it.
-constexpr double kFootholdSmoothedS = 0.005;
-
+/// same hip: a loop without delay, and with a gain near one. A low pass smooths it.
 void LeadFoot(const Context& context, const WalkingFoothold& foothold, GaitMemory& memory) {
   const bool smooths = context.TimeIn(memory) > 0 && foothold.foreseen;
-  const double kept = smooths ? kFootholdSmoothedS / (kFootholdSmoothedS + context.step_s) : 0;
+  const double smooth_s = context.gains.style.landing_smooth_s;
+  const double kept = smooths ? smooth_s / (smooth_s + context.step_s) : 0;
   memory.foothold_W_m = foothold.p_WF_m + kept * (memory.foothold_W_m - foothold.p_WF_m);
 }
 

@@ -24,10 +24,8 @@ constexpr double kHurryPerMetre = 6;
 /// over a foot further ahead, and is left low on a slanting leg. The last one may be further.
 constexpr double kBrakingReachS = 0.115;
 constexpr double kLandingReachS = 0.18;
-/// A foot in a step this quick follows balance until it touches; in a slow one it comes near rest.
-constexpr double kQuickStepS = 0.42, kSlowStepS = 0.56;
-/// Part of the time to touchdown that a slow step's foothold is ahead.
-constexpr double kAimsAhead = 0.7;
+/// Between a step without a foreseen foothold and one with it, at least.
+constexpr double kLeastRangeS = 1e-3;
 
 struct Pendulum {
   double rate_radps;  ///< w = sqrt(g / h).
@@ -49,9 +47,10 @@ Pendulum SupportPendulum(const Context& context, const GaitMemory& memory) {
 /// Part of the time to touchdown that the foothold of the present step is foreseen: as far as
 /// the walk is regular, which it is not before a pit or after a push (style.h); 0 in a quick step.
 double AimsAhead(const Context& context, const GaitMemory& memory) {
-  const double slow = (StepTime(context, memory) - kQuickStepS) / (kSlowStepS - kQuickStepS);
-  return kAimsAhead * context.gains.style.foresight * memory.style.share *
-         std::clamp(slow, 0.0, 1.0);
+  const StyleGains& gains = context.gains.style;
+  const double range_s = std::max(kLeastRangeS, gains.landing_from_s - gains.landing_to_s);
+  const double slow = (StepTime(context, memory) - gains.landing_to_s) / range_s;
+  return gains.landing_lead * gains.foresight * memory.style.share * std::clamp(slow, 0.0, 1.0);
 }
 
 /// Where a foot is led that is to touch down nearly at rest: as the capture point moves away from

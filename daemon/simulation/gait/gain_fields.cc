@@ -164,6 +164,10 @@ constexpr std::array kFields{
     GAIN(anticipation, crouch_m, "m", 0, 0.3),
 
     GAIN(style, foresight, "1", 0, 1),
+    GAIN(style, landing_lead, "1", 0, 1),
+    GAIN(style, landing_to_s, "s", 0.1, 1.5),
+    GAIN(style, landing_from_s, "s", 0.1, 1.5),
+    GAIN(style, landing_smooth_s, "s", 0, 0.1),
     GAIN(style, bob_share, "1", 0, 1.5),
     GAIN(style, pelvis_roll_rad, "rad", -0.3, 0.3),
     GAIN(style, pelvis_roll_lead, "1", -0.5, 0.5),

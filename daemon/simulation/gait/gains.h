@@ -187,17 +187,21 @@ struct AnticipationGains {
 };
 
 /// Style of walking and stepping: set-points within a step, of the servos that run anyway (docs/
-/// gait.md, "Style"). The phase within the step is 0 at touchdown and 1 at the next one. All are 0
-/// without style.
+/// gait.md, "Style"). The phase within the step is 0 at touchdown and 1 at the next one. Without
+/// style, foresight and the set-points are 0.
 struct StyleGains {
-  double foresight = 0;         ///< Part of the time to touchdown for which hurry looks ahead.
-  double bob_share = 0;         ///< Rise and fall of the hips, as part of a rigid leg's arc.
-  double pelvis_roll_rad = 0;   ///< The swing leg's hip goes down by this roll, ...
-  double pelvis_roll_lead = 0;  ///< ... this part of a step before the middle of the step.
-  double pelvis_yaw_rad = 0;    ///< The landing leg's hip goes ahead by this yaw, at touchdown.
-  double nod_rad = 0;           ///< Pitch forward at touchdown, back between.
-  double turn_bank_share = 0;   ///< Bank in a walked curve, as bank_share is in a run's.
-  double lean_rad_per_mps = 0;  ///< Pitch forward by v_d; in runs too.
+  double foresight = 0;             ///< Part of the time to touchdown for which hurry looks ahead.
+  double landing_lead = 0.7;        ///< The foot is led ahead by this part of that, ...
+  double landing_to_s = 0.42;       ///< ... not in a step this short, ...
+  double landing_from_s = 0.56;     ///< ... and in full in one this long, ...
+  double landing_smooth_s = 0.005;  ///< ... over a low pass of the hip's pull on the COM.
+  double bob_share = 0;             ///< Rise and fall of the hips, as part of a rigid leg's arc.
+  double pelvis_roll_rad = 0;       ///< The swing leg's hip goes down by this roll, ...
+  double pelvis_roll_lead = 0;      ///< ... this part of a step before the middle of the step.
+  double pelvis_yaw_rad = 0;        ///< The landing leg's hip goes ahead by this yaw, at touchdown.
+  double nod_rad = 0;               ///< Pitch forward at touchdown, back between.
+  double turn_bank_share = 0;       ///< Bank in a walked curve, as bank_share is in a run's.
+  double lean_rad_per_mps = 0;      ///< Pitch forward by v_d; in runs too.
 };
 
 /// Where the style fades, because balance comes first (style.h).
