@@ -96,8 +96,6 @@ double GroundAtEnd(const stream::TrackSegment& segment) {
 
 /// Rise of the COM until lift-off per extension of the spring; the rest is learned.
 constexpr double kRiseShare = 0.87;
-/// A plan this near to the nominal lift-off leaves it as it is.
-constexpr double kAsEverMps = 0.03;
 /// Weight of a new measure in the remembered one.
 constexpr double kSmoothing = 0.3;
 
@@ -279,9 +277,7 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
   if (JumpsPit(context.goal, memory)) {
     memory.transition.preparing_jump = seen.leaping && last.flight_mps < gains.jump_speed_max_mps;
   }
-  const bool as_ever = std::fabs(plan.lift_off_mps - nominal_mps) < kAsEverMps;
-  if (seen.planned && !as_ever && (!plan.leaps || seen.leaping))
-    seen.lift_off_mps = plan.lift_off_mps;
+  if (seen.planned && (!plan.leaps || seen.leaping)) seen.lift_off_mps = plan.lift_off_mps;
 }
 
 double PlannedExtension(const Context& context, double lift_off_mps, const GaitMemory& memory) {
