@@ -118,6 +118,8 @@ constexpr std::array kFields{
     GAIN(stepping, slowest_mps, "m/s", 0, 5),
     GAIN(stepping, slower_limit_mps, "m/s", 0, 2),
     GAIN(stepping, faster_limit_mps, "m/s", 0, 5),
+    GAIN(stepping, steep, "1", 0, 2),
+    GAIN(stepping, steep_walk_mps, "m/s", 0.1, 2),
 
     GAIN(pit, limits.edge_margin_m, "m", 0, 0.5),
     GAIN(pit, limits.landing_margin_m, "m", 0, 0.5),

@@ -104,7 +104,7 @@ struct CurveGains {
   double leg_gap_m = 0.07;  ///< Between the legs' axes (KeepLegsApart in foothold.h).
 };
 
-/// Running and jumping over steps of the ground that are seen.
+/// Steps of the ground that are seen, running and jumping; and slopes, walking.
 struct SteppingGains {
   double low_margin_m = 0.06;    ///< Foot's centre from an edge, below it.
   double high_margin_m = 0.04;   ///< Above it.
@@ -116,6 +116,8 @@ struct SteppingGains {
   double slowest_mps = 0.8;       ///< Below, flight time moves no foothold.
   double slower_limit_mps = 0.5;  ///< Lift-off slower by at most this, going down.
   double faster_limit_mps = 1.2;  ///< Faster by at most this, going up.
+  double steep = 0.23;            ///< Where the ground ahead rises or falls more than this, ...
+  double steep_walk_mps = 1.3;    ///< ... no walk is faster.
 };
 
 /// Figure 9: how energy is added and taken out between the gaits.

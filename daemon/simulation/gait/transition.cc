@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/base/units.h"
 #include "daemon/simulation/biped/body_state.h"
@@ -301,6 +302,27 @@ bool LeapsFromRun(const GaitMemory& memory) {
   return memory.gait == Gait::kRun && memory.transition.preparing_jump;
 }
 
+namespace {
+
+/// Where a walk looks for a slope, ahead of the COM: under it, and before it is there.
+constexpr double kSlopeSightM[] = {0, 0.7, 1.4};
+
+/// A walk of more than 1.35 m/s falls on slopes of 15 degrees: it is slower there, as people are.
+double SpeedOnSlope(const Context& context, const GaitMemory& memory) {
+  const SteppingGains& gains = context.gains.stepping;
+  double steepest = 0;
+  if (context.seen_ground == nullptr) return std::numeric_limits<double>::infinity();
+  for (const double ahead_m : kSlopeSightM) {
+    const terrain::Spot spot =
+        SpotAt(context, context.body.p_WC + ahead_m * Ahead(memory.heading_rad));
+    steepest =
+        std::max(steepest, std::fabs(spot.slope * std::cos(memory.heading_rad - spot.heading_rad)));
+  }
+  return steepest > gains.steep ? gains.steep_walk_mps : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
 void SlewSpeed(const Context& context, GaitMemory& memory) {
   const TransitionGains& limits = context.gains.transition;
   const bool to_ground = !Flies(context.goal.gait);
@@ -320,7 +342,10 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
         in_flight ? std::min(memory.speed.desired_mps, speed_mps) : memory.speed.desired_mps;
     target_mps = std::max(target_mps, held_mps);
   }
-  if (to_ground && !flying) target_mps = std::min(target_mps, SpeedBeforePit(context, memory));
+  if (to_ground && !flying) {
+    target_mps =
+        std::min({target_mps, SpeedBeforePit(context, memory), SpeedOnSlope(context, memory)});
+  }
   target_mps = std::min(target_mps, SlantSpeed(context, memory));
   memory.speed.target_mps = target_mps;
   // Slowing down starts from the speed there is, not from one that was not reached yet.

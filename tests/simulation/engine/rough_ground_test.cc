@@ -50,6 +50,14 @@ TEST(FastRun, GoesUphill) {
   EXPECT_NEAR(GoAndPush(engine, Command(Gait::kRun, 4), 20), 4, 0.1);
 }
 
+TEST(FastWalk, SlowsDownOnASteepSlope) {
+  for (const char* slope :
+       {R"({"length_m":300,"slope_deg":15})", R"({"length_m":300,"slope_deg":-15})"}) {
+    GaitEngine engine = On(slope);
+    EXPECT_NEAR(GoAndPush(engine, Command(Gait::kWalk, 1.75), 15), 1.3, 0.1) << slope;
+  }
+}
+
 GaitEngine OnSurface(const terrain::Surface& surface) {
   Result<GaitEngine> engine = GaitEngine::Create(Texts(), {.surface = surface});
   EXPECT_TRUE(engine.ok()) << (engine.ok() ? "" : engine.error().message);
