@@ -95,29 +95,30 @@ double Hop::LiftOffFor(double stride_m, double rise_m) const {
 
 namespace {
 
-/// Lift-off speed that the spring itself has to give.
-double SpringSpeed(double lift_off_mps, double bottom_mps) {
+/// The last term of Thrust's equation: the energy of u, which the spring itself has to give.
+double MotionEnergy(const Thrust& thrust, double lift_off_mps) {
   constexpr double kShare = 0.6, kSharePerMps = 0.5;  // a and b of Thrust.
-  return std::max(0.0, lift_off_mps - (kShare + kSharePerMps * lift_off_mps) * bottom_mps);
+  const double spring_mps =
+      std::max(0.0, lift_off_mps - (kShare + kSharePerMps * lift_off_mps) * thrust.bottom_mps);
+  const double supported_kg = thrust.mass_kg - thrust.feet_kg;
+  return thrust.mass_kg * thrust.mass_kg / supported_kg * spring_mps * spring_mps / 2;
 }
 
 }  // namespace
 
 double Thrust::ExtensionFor(double lift_off_mps) const {
-  const double spring_mps = SpringSpeed(lift_off_mps, bottom_mps);
   const double supported_kg = mass_kg - feet_kg;
   const double weight_n = supported_kg * kStandardGravityMps2;
   const double useful_n_per_m = (1 - loss_share) * stiffness_n_per_m;
-  const double motion_j = mass_kg * mass_kg / supported_kg * spring_mps * spring_mps / 2;
+  const double motion_j = MotionEnergy(*this, lift_off_mps);
   return (weight_n + std::sqrt(weight_n * weight_n + 2 * useful_n_per_m * motion_j)) /
          useful_n_per_m;
 }
 
 double Thrust::LossShare(double extension_m, double lift_off_mps) const {
-  const double spring_mps = SpringSpeed(lift_off_mps, bottom_mps);
   const double supported_kg = mass_kg - feet_kg;
   const double stored_j = stiffness_n_per_m * extension_m * extension_m / 2;
-  const double motion_j = mass_kg * mass_kg / supported_kg * spring_mps * spring_mps / 2;
+  const double motion_j = MotionEnergy(*this, lift_off_mps);
   return (stored_j - supported_kg * kStandardGravityMps2 * extension_m - motion_j) / stored_j;
 }
 

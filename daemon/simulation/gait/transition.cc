@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include "common/base/units.h"
 #include "daemon/simulation/biped/body_state.h"
@@ -25,6 +25,11 @@ terrain::Spot SpotAt(const Context& context, const Vector3d& p_W) {
 }
 
 Vector3d Ahead(double heading_rad) { return ToWorld(heading_rad, {1, 0, 0}); }
+
+/// Rise over run along a heading.
+double SlopeAlong(const terrain::Spot& spot, double heading_rad) {
+  return spot.slope * std::cos(heading_rad - spot.heading_rad);
+}
 
 /// Steps only: a pit's edges belong to another plan.
 bool IsStep(const terrain::Edge& edge) { return std::isfinite(edge.distance_m) && !edge.pit; }
@@ -190,7 +195,7 @@ void PlanLanding(const Context& context, GaitMemory& memory) {
     if (spot.pit) return;
     height_m = spot.height_m;
   }
-  ground.slope = spot.slope * std::cos(memory.heading_rad - spot.heading_rad);
+  ground.slope = SlopeAlong(spot, memory.heading_rad);
   if (ground.shift_m != 0) ground.towards = ground.shift_m;
   KeepEdges(foothold_W, spot, ahead_W, ground);
 }
@@ -308,17 +313,16 @@ namespace {
 constexpr double kSlopeSightM[] = {0, 0.7, 1.4};
 
 /// A walk of more than 1.35 m/s falls on slopes of 15 degrees: it is slower there, as people are.
-double SpeedOnSlope(const Context& context, const GaitMemory& memory) {
+double WalkOnSlope(double speed_mps, const Context& context, const GaitMemory& memory) {
   const SteppingGains& gains = context.gains.stepping;
-  double steepest = 0;
-  if (context.seen_ground == nullptr) return std::numeric_limits<double>::infinity();
-  for (const double ahead_m : kSlopeSightM) {
-    const terrain::Spot spot =
-        SpotAt(context, context.body.p_WC + ahead_m * Ahead(memory.heading_rad));
-    steepest =
-        std::max(steepest, std::fabs(spot.slope * std::cos(memory.heading_rad - spot.heading_rad)));
-  }
-  return steepest > gains.steep ? gains.steep_walk_mps : std::numeric_limits<double>::infinity();
+  if (speed_mps <= gains.steep_walk_mps || context.seen_ground == nullptr) return speed_mps;
+  const Vector3d ahead_W = Ahead(memory.heading_rad);
+  const bool steep =
+      std::any_of(std::begin(kSlopeSightM), std::end(kSlopeSightM), [&](double ahead_m) {
+        const terrain::Spot spot = SpotAt(context, context.body.p_WC + ahead_m * ahead_W);
+        return std::fabs(SlopeAlong(spot, memory.heading_rad)) > gains.steep;
+      });
+  return steep ? gains.steep_walk_mps : speed_mps;
 }
 
 }  // namespace
@@ -343,8 +347,8 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
     target_mps = std::max(target_mps, held_mps);
   }
   if (to_ground && !flying) {
-    target_mps =
-        std::min({target_mps, SpeedBeforePit(context, memory), SpeedOnSlope(context, memory)});
+    target_mps = std::min(target_mps, SpeedBeforePit(context, memory));
+    target_mps = WalkOnSlope(target_mps, context, memory);
   }
   target_mps = std::min(target_mps, SlantSpeed(context, memory));
   memory.speed.target_mps = target_mps;
